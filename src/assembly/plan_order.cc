@@ -261,4 +261,72 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
   return plan;
 }
 
+namespace {
+
+Result<std::vector<std::size_t>> FindMoves(const Model& model, const OrderRules& rules,
+                                           const std::vector<OccurrenceId>& parts) {
+  std::vector<std::size_t> moves;
+  std::vector<bool> is_there(rules.moves.size(), false);
+  for (const OccurrenceId part : parts) {
+    const std::size_t move = FindMove(rules, part);
+    if (move == rules.moves.size() || is_there[move]) {
+      const bool is_part = part.index() < model.product->occurrences.size();
+      return Fail(ErrorCode::kInvalid,
+                  move == rules.moves.size() ? "this part has no turn of its own in the order"
+                                             : "this part comes twice in the order",
+                  is_part ? model.product->occurrences[part.index()].path
+                          : fmt::format("o{}", part.value()),
+                  "name one part of each step");
+    }
+    is_there[move] = true;
+    moves.push_back(move);
+  }
+  const auto missing = std::find(is_there.begin(), is_there.end(), false);
+  if (missing != is_there.end()) {
+    return Fail(ErrorCode::kInvalid, "this part is missing in the order",
+                PathOfMove(model, rules, static_cast<std::size_t>(missing - is_there.begin())),
+                "name one part of each step");
+  }
+  return moves;
+}
+
+}  // namespace
+
+Result<CheckedOrder> CheckOrder(const Model& model, const OrderRules& rules,
+                                const std::vector<OccurrenceId>& parts,
+                                const PlanOptions& options) {
+  auto moves = FindMoves(model, rules, parts);
+  if (!moves) {
+    return Unexpected(moves.error());
+  }
+  CheckedOrder checked;
+  simulation::OrderSearchOptions search;
+  search.weights = options.weights;
+  search.most_orders = 1;
+  search.stop = options.stop;
+  std::vector<std::size_t> before;
+  for (const std::size_t move : *moves) {
+    checked.blocking.push_back(simulation::ListBlocking(rules, before, move));
+    if (!before.empty()) {
+      search.wishes.push_back({before.back(), move});
+    }
+    before.push_back(move);
+  }
+  checked.moves = *std::move(moves);
+  const bool is_free = std::all_of(checked.blocking.begin(), checked.blocking.end(),
+                                   [](const auto& blocking) { return blocking.empty(); });
+  if (is_free) {
+    simulation::OrderSearch found = simulation::FindOrders(rules, search);
+    if (!found.orders.empty()) {
+      checked.order = std::move(found.orders.front());
+      checked.statics =
+          CalcStatics(model, simulation::StateStatics(model), rules, *checked.order, options.stop);
+    }
+  }
+  if (options.stop.stop_requested()) {
+    return Fail(ErrorCode::kCancelled, "checking the order was cancelled", model.product->source);
+  }
+  return checked;
+}
+
 }  // namespace hvas::assembly

@@ -59,4 +59,24 @@ struct OrderPlan {
 [[nodiscard]] Result<OrderPlan> PlanOrder(const simulation::Model& model,
                                           const PlanOptions& options);
 
+/** What an order comes to that somebody has thought of. */
+struct CheckedOrder {
+  std::vector<std::size_t> moves;  ///< Of the rules, in this order.
+  /** For each place, the moves before it of which one at least stands in each way of the move
+   there; empty where it can come. */
+  std::vector<std::vector<std::size_t>> blocking;
+  /** The order with the ways of least cost; none where a move cannot come. */
+  std::optional<simulation::FoundOrder> order;
+  std::optional<OrderStatics> statics;  ///< Its statics; none where they are not known.
+};
+
+/** Checks an order of all moves.
+ Errors: kInvalid where the parts are not one of each move; kCancelled after a stop.
+ @param parts  One part of each move, in the order of assembly.
+ @param options  Of these, the weights and the stop count. */
+[[nodiscard]] Result<CheckedOrder> CheckOrder(const simulation::Model& model,
+                                              const simulation::OrderRules& rules,
+                                              const std::vector<product::OccurrenceId>& parts,
+                                              const PlanOptions& options);
+
 }  // namespace hvas::assembly

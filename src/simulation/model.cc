@@ -539,4 +539,12 @@ std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
   return drawn;
 }
 
+std::shared_ptr<const Model> ChangeOrder(const Model& model, std::vector<SequenceStep> steps,
+                                         const std::stop_token& stop, Diagnostics* diagnostics) {
+  auto changed = std::make_shared<Model>(model);
+  changed->sequence.steps = std::move(steps);
+  RelieveWays(stop, changed.get(), diagnostics);
+  return changed;
+}
+
 }  // namespace hvas::simulation

@@ -108,6 +108,13 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
                                                      fits::PairChoice pairs,
                                                      Diagnostics* diagnostics);
 
+/** Makes the same model with another order of assembly, whose ways are made free as Compile makes
+ them. @param steps  All steps, as Sequence has them. */
+[[nodiscard]] std::shared_ptr<const Model> ChangeOrder(const Model& model,
+                                                       std::vector<SequenceStep> steps,
+                                                       const std::stop_token& stop,
+                                                       Diagnostics* diagnostics);
+
 /** What the planners of a model's order and of its disassembly need.
  @param scene  Gets all parts at their drawn poses; outlives the result. */
 [[nodiscard]] SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene);

@@ -59,6 +59,9 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::NextCommand>(&Hub::DoNext),
       Entry<protocol::PlanRemovalCommand>(&Hub::DoPlanRemoval),
       Entry<protocol::TakeOutCommand>(&Hub::DoTakeOut),
+      Entry<protocol::FindOrdersCommand>(&Hub::DoFindOrders),
+      Entry<protocol::CheckOrderCommand>(&Hub::DoCheckOrder),
+      Entry<protocol::SetOrderCommand>(&Hub::DoSetOrder),
       Entry<protocol::UndoCommand>(&Hub::DoUndo),
       Entry<protocol::RedoCommand>(&Hub::DoRedo),
       Entry<protocol::ResetCommand>(&Hub::DoReset),
@@ -138,6 +141,10 @@ Result<Json> Hub::DoDemo(const protocol::DemoCommand& command) {
 
 Result<Json> Hub::DoNext() {
   return Done(workbench_->demo().DoNext());
+}
+
+Result<Json> Hub::DoSetOrder(const protocol::SetOrderCommand& command) {
+  return Done(workbench_->orders().Set(command.occurrences));
 }
 
 Result<Json> Hub::DoUndo() {

@@ -70,6 +70,14 @@ Json ToJson(const Error& error) {
           {"remedy", error.remedy}};
 }
 
+Json ToJson(const std::vector<product::OccurrenceId>& ids) {
+  Json json = Json::array();
+  for (const product::OccurrenceId id : ids) {
+    json.push_back(id.value());
+  }
+  return json;
+}
+
 Json ToJson(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "base/result.h"
 #include "simulation/simulation.h"
 #include "studio/json.h"
@@ -9,6 +11,7 @@ namespace hvas::studio {
 /** Values in the notation of docs/protocol.md: SI units, quaternions as w, x, y, z. */
 [[nodiscard]] const char* ToString(simulation::Placement placement);
 [[nodiscard]] Json ToJson(const Error& error);
+[[nodiscard]] Json ToJson(const std::vector<product::OccurrenceId>& ids);
 [[nodiscard]] Json ToJson(const Vec3& v);
 [[nodiscard]] Json ToJson(const spatial::Pose& X);
 

@@ -134,6 +134,9 @@ class Hub {
   Result<Json> DoNext();
   Result<Json> DoPlanRemoval(const Caller& caller, const protocol::PlanRemovalCommand& command);
   Result<Json> DoTakeOut(const Caller& caller, const protocol::TakeOutCommand& command);
+  Result<Json> DoFindOrders(const Caller& caller, const protocol::FindOrdersCommand& command);
+  Result<Json> DoCheckOrder(const Caller& caller, const protocol::CheckOrderCommand& command);
+  Result<Json> DoSetOrder(const protocol::SetOrderCommand& command);
   Result<Json> DoUndo();
   Result<Json> DoRedo();
   Result<Json> DoReset();

@@ -18,6 +18,13 @@ Unexpected FailField(const char* name, const char* wanted) {
               "reload the page");
 }
 
+/** The number of an index; none of other values. */
+std::optional<std::uint32_t> IndexOf(const Json& value) {
+  const bool is_index = value.is_number_unsigned() &&
+                        value.get<std::uint64_t>() < std::numeric_limits<std::uint32_t>::max();
+  return is_index ? std::optional(value.get<std::uint32_t>()) : std::nullopt;
+}
+
 }  // namespace
 
 Result<Json> ParseCommand(std::string_view text) {
@@ -78,11 +85,26 @@ Result<bool> FlagAt(const Json& object, const char* name) {
 
 Result<std::uint32_t> IndexAt(const Json& object, const char* name) {
   const Json* field = FieldOf(object, name);
-  if (field == nullptr || !field->is_number_unsigned() ||
-      field->get<std::uint64_t>() >= std::numeric_limits<std::uint32_t>::max()) {
-    return FailField(name, "an index");
+  const auto index = field != nullptr ? IndexOf(*field) : std::nullopt;
+  return index ? Result<std::uint32_t>(*index) : FailField(name, "an index");
+}
+
+Result<std::vector<product::OccurrenceId>> OccurrencesAt(const Json& object, const char* name) {
+  constexpr std::size_t kMost = 65'536;  // More than four times the parts of a product.
+  const Json* field = FieldOf(object, name);
+  if (field == nullptr || !field->is_array() || field->size() > kMost) {
+    return FailField(name, "a list of indices");
   }
-  return field->get<std::uint32_t>();
+  std::vector<product::OccurrenceId> occurrences;
+  occurrences.reserve(field->size());
+  for (const Json& item : *field) {
+    const auto index = IndexOf(item);
+    if (!index) {
+      return FailField(name, "a list of indices");
+    }
+    occurrences.emplace_back(*index);
+  }
+  return occurrences;
 }
 
 Result<std::size_t> HandAt(const Json& object, const char* name) {

@@ -8,8 +8,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/result.h"
+#include "product/product.h"
 #include "session/json_values.h"
 #include "studio/measure.h"
 #include "study/study_session.h"
@@ -43,6 +45,9 @@ inline constexpr std::size_t kLongestText = 1000;
                                          std::size_t longest = kLongestText);
 [[nodiscard]] Result<bool> FlagAt(const Json& object, const char* name);
 [[nodiscard]] Result<std::uint32_t> IndexAt(const Json& object, const char* name);
+/** A list of at most 65,536 occurrences, which need not exist. */
+[[nodiscard]] Result<std::vector<product::OccurrenceId>> OccurrencesAt(const Json& object,
+                                                                       const char* name);
 [[nodiscard]] Result<std::size_t> HandAt(const Json& object, const char* name);
 
 /** Closed interval of the values that a field may have. */

@@ -1,11 +1,17 @@
 #include "studio/scene_builder.h"
 
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "assembly/plan_order.h"
 #include "assembly/prepare_model.h"
 #include "base/digest.h"
 #include "cad/glb.h"
+#include "simulation/order_rules.h"
+#include "simulation/order_search.h"
+#include "studio/commands.h"
+#include "studio/json_fields.h"
 #include "studio/saved_work.h"
 
 namespace hvas::studio {
@@ -13,6 +19,11 @@ namespace hvas::studio {
 using SharedScene = std::shared_ptr<const OpenScene>;
 
 namespace {
+
+/** Whether an edit of a scene is its order, and no change of its product. */
+bool IsOrder(const Json& edit) {
+  return TextOr(edit, "command", "") == protocol::SetOrderCommand::kName;
+}
 
 /** Replaces what mates of the user have made of the poses before by what they make of them now. */
 Diagnostics ReplacePlacement(const Diagnostics& before, const product::Product& product) {
@@ -75,17 +86,55 @@ SharedScene SceneBuilder::MakeCopy(const OpenScene& before,
 Result<SharedScene> SceneBuilder::ApplyEdits(const OpenScene& opened,
                                              const std::vector<Json>& edits,
                                              const cad::ProgressFn& progress) {
-  auto change = CombineEdits(edits);
+  std::vector<Json> changes = edits;
+  std::optional<Json> order;
+  if (!changes.empty() && IsOrder(changes.back())) {
+    order = std::move(changes.back());
+    changes.pop_back();
+  }
+  auto change = CombineEdits(changes);
   if (!change) {
     return Unexpected(change.error());
   }
-  const auto made = Change(opened, {"edits", nullptr, std::move(*change)}, progress);
-  if (!made) {
-    return made;
+  auto scene = std::make_shared<const OpenScene>(opened);
+  if (!changes.empty()) {
+    const auto made = Change(opened, {"edits", nullptr, std::move(*change)}, progress);
+    if (!made) {
+      return made;
+    }
+    auto changed = std::make_shared<OpenScene>(**made);
+    changed->edits = std::move(changes);
+    scene = std::move(changed);
   }
-  auto scene = std::make_shared<OpenScene>(**made);
-  scene->edits = edits;
+  return order ? RepeatOrder(*scene, *order) : Result<SharedScene>(scene);
+}
+
+SharedScene SceneBuilder::ChangeOrder(const OpenScene& before,
+                                      std::vector<simulation::SequenceStep> steps,
+                                      const Json& command) {
+  auto scene = std::make_shared<OpenScene>(before);
+  scene->model = simulation::ChangeOrder(*before.model, std::move(steps), {}, &scene->diagnostics);
+  std::erase_if(scene->edits, IsOrder);
+  scene->edits.push_back(command);
+  scene->epoch = ++last_epoch_;
   return scene;
+}
+
+Result<SharedScene> SceneBuilder::RepeatOrder(const OpenScene& before, const Json& command) {
+  const auto wanted = protocol::ReadFields<protocol::SetOrderCommand>(command);
+  if (!wanted) {
+    return Unexpected(wanted.error());
+  }
+  const simulation::OrderRules rules = simulation::FindOrderRules(*before.model, {});
+  const auto checked = assembly::CheckOrder(*before.model, rules, wanted->occurrences, {});
+  if (!checked) {
+    return Unexpected(checked.error());
+  }
+  if (!checked->order) {
+    return Fail(ErrorCode::kInvalid, "the order of the saved work is not possible any more",
+                before.name, "find an order anew");
+  }
+  return ChangeOrder(before, simulation::ListSteps(rules, *checked->order), command);
 }
 
 Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& edit,
@@ -100,6 +149,7 @@ Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& ed
   if (!model) {
     return Unexpected(model.error());
   }
+  std::erase_if(scene->edits, IsOrder);
   if (!edit.command.is_null()) {
     scene->edits.push_back(edit.command);
   }

@@ -43,7 +43,8 @@ class SceneBuilder {
                                                               const cad::ProgressFn& progress,
                                                               const std::stop_token& stop);
 
-  /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails. */
+  /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails, and of an
+   order that is not possible any more. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ApplyEdits(
       const OpenScene& opened, const std::vector<Json>& edits, const cad::ProgressFn& progress);
 
@@ -57,7 +58,15 @@ class SceneBuilder {
                                                                 const Edit& edit,
                                                                 const cad::ProgressFn& progress);
 
+  /** Changes the order of assembly of a scene. Where the scene's product is changed later, its
+   order is found anew. @param steps  Of all parts. @param command  Command "set_order" to repeat it
+   from. */
+  [[nodiscard]] std::shared_ptr<const OpenScene> ChangeOrder(
+      const OpenScene& before, std::vector<simulation::SequenceStep> steps, const Json& command);
+
  private:
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> RepeatOrder(const OpenScene& before,
+                                                                     const Json& command);
   [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(
       product::Product product, const std::string& name, const cad::ProgressFn& progress,
       Diagnostics* diagnostics) const;

@@ -38,14 +38,6 @@ const char* NameOf(SequenceStep::Kind kind) {
   return "insert";
 }
 
-Json IdsOf(const std::vector<OccurrenceId>& ids) {
-  Json json = Json::array();
-  for (const OccurrenceId id : ids) {
-    json.push_back(id.value());
-  }
-  return json;
-}
-
 Json SubassembliesOf(const product::Product& product) {
   Json all = Json::array();
   for (const product::Subassembly& subassembly : product.subassemblies) {
@@ -58,7 +50,7 @@ Json SubassembliesOf(const product::Product& product) {
                                                             : Json(nullptr)},
                    {"name", subassembly.name},
                    {"subassemblies", std::move(children)},
-                   {"occurrences", IdsOf(subassembly.occurrences)}});
+                   {"occurrences", ToJson(subassembly.occurrences)}});
   }
   return all;
 }
@@ -177,7 +169,7 @@ Json StepsOf(const Model& model) {
   for (const SequenceStep& step : model.sequence.steps) {
     all.push_back({{"kind", NameOf(step.kind)},
                    {"occurrence", step.occurrence.value()},
-                   {"members", IdsOf(step.members)},
+                   {"members", ToJson(step.members)},
                    {"way_in", ToJson(Vec3(-step.extraction_W))},
                    {"distance_m", step.engage_distance}});
   }

@@ -10,6 +10,7 @@ Workbench::Workbench(const WorkbenchOptions& options)
       hands_(&live_, &events_, &worker_),
       edits_(&builder_, &live_, &events_, &worker_),
       demo_(&live_, &edits_, &worker_),
+      orders_({&builder_, &live_, &edits_, &events_, &worker_}),
       recordings_(options.recordings_folder, &live_, &events_, &worker_),
       trials_({&builder_, &live_, &edits_, &events_, &worker_}, 1 / options.rate_hz),
       saver_(options.work_file, &live_, &trials_, &events_),

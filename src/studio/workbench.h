@@ -16,6 +16,7 @@
 #include "studio/workbench_demo.h"
 #include "studio/workbench_edits.h"
 #include "studio/workbench_hands.h"
+#include "studio/workbench_orders.h"
 #include "studio/workbench_recordings.h"
 #include "studio/workbench_trials.h"
 
@@ -62,6 +63,8 @@ class Workbench : private SceneObserver {
 
   [[nodiscard]] WorkbenchDemo& demo() { return demo_; }
 
+  [[nodiscard]] WorkbenchOrders& orders() { return orders_; }
+
   [[nodiscard]] WorkbenchRecordings& recordings() { return recordings_; }
 
   [[nodiscard]] WorkbenchTrials& trials() { return trials_; }
@@ -82,6 +85,7 @@ class Workbench : private SceneObserver {
   WorkbenchHands hands_;
   WorkbenchEdits edits_;
   WorkbenchDemo demo_;
+  WorkbenchOrders orders_;
   WorkbenchRecordings recordings_;
   WorkbenchTrials trials_;
   WorkSaver saver_;

@@ -72,15 +72,21 @@ Result<void> WorkbenchEdits::Change(const Edit& edit) {
 }
 
 void WorkbenchEdits::DoChange(const Edit& edit) {
-  const auto [before, state] = live_->MakeSnapshot();
-  const auto after = builder_->Change(*before, edit, MakeProgressListener(events_, edit.what));
+  const auto after =
+      builder_->Change(*live_->scene(), edit, MakeProgressListener(events_, edit.what));
   if (!after) {
     events_->Publish({{"event", "failed"}, {"file", edit.what}, {"error", ToJson(after.error())}});
     return;
   }
-  Remember(live_->MakeSnapshot(), edit.what);
+  Replace(*after, edit.what);
+}
+
+void WorkbenchEdits::Replace(const std::shared_ptr<const OpenScene>& after,
+                             const std::string& what) {
+  const SceneSnapshot before = live_->MakeRestingSnapshot();
+  Remember(before, what);
   // In the new order, parts that are in their place already are skipped.
-  live_->Show(*after, FollowPlaces(state, *before->model, *(*after)->model), false, edit.what);
+  live_->Show(after, FollowPlaces(before.state, *before.scene->model, *after->model), false, what);
 }
 
 Result<void> WorkbenchEdits::GoTo(History::Direction direction) {

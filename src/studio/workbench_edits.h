@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,11 @@ class WorkbenchEdits final : public SceneObserver {
 
   /** Puts all parts back on the table. */
   [[nodiscard]] Result<void> Reset();
+
+  /** Shows another scene of the same parts, whose parts stay where they are unless mates of the
+   user put them elsewhere; it can be undone. For the worker thread. @param what  As of Remember().
+ */
+  void Replace(const std::shared_ptr<const OpenScene>& after, const std::string& what);
 
   /** Adds an undo step and publishes the history. @param before  Snapshot before the action.
    @param what  Description of the action for people. */

@@ -6,6 +6,7 @@ PRIMITIVES = {"text": "string", "flag": "boolean", "number": "number", "whole": 
               "hand": "number", "null": "null"}
 # C++ type of a command's field, and the function of studio/json_fields.h that reads it.
 CPP = {"text": ("std::string", "TextAt"), "flag": ("bool", "FlagAt"), "index": ("std::uint32_t", "IndexAt"),
+       "index[]": ("std::vector<product::OccurrenceId>", "OccurrencesAt"),
        "hand": ("std::size_t", "HandAt"), "number": ("double", "NumberAt"), "FaceOf": ("PickedFace", "FaceAt"),
        "AnswerValue": ("study::AnswerValue", "AnswerAt")}
 RIGHTS = {"lease": "kLease", "hand": "kHand", "operator": "kOperator", "anybody": "kAnybody"}
@@ -255,7 +256,7 @@ def cpp_study_rules(schema, lines):
 
 def make_cpp(schema):
     lines = [
-        *cpp_head("array", "cstdint", "optional", "string", "utility"),
+        *cpp_head("array", "cstdint", "optional", "string", "utility", "vector"),
         '#include "studio/json_fields.h"',
         "",
         "namespace hvas::studio::protocol {",

@@ -122,10 +122,12 @@ const FoundOrder& BestOf(const assembly::OrderPlan& plan) {
 }
 
 /** What has to be held after a move of the best order; none where it was not looked at. */
-const std::optional<std::vector<OccurrenceId>>& HoldsAfter(const assembly::OrderPlan& plan,
-                                                           std::size_t place) {
-  static const std::optional<std::vector<OccurrenceId>> kNone;
-  return plan.statics.empty() ? kNone : plan.statics.front().holds[place];
+std::optional<std::vector<OccurrenceId>> HoldsAfter(const assembly::OrderPlan& plan,
+                                                    std::size_t place) {
+  if (plan.statics.empty()) {
+    return std::nullopt;
+  }
+  return plan.statics.front().holds[place];
 }
 
 nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {

@@ -65,7 +65,8 @@ WorkbenchOptions SmallBench() {
     if (stop.stop_requested()) {
       return Fail(ErrorCode::kCancelled, "stopped", file.string(), "");
     }
-    return simulation::testing::PegInBlock();
+    return file.filename() == "cap.step" ? simulation::testing::CappedCollarUnderClamp()
+                                         : simulation::testing::PegInBlock();
   };
   return options;
 }

@@ -21,7 +21,7 @@ function isTyping(target: EventTarget | null): boolean {
 
 /** Within what has arrow keys of its own that it cannot do without. */
 function ownsArrows(target: EventTarget | null): boolean {
-  const kOwners = "dialog,[role=menu],[role=listbox],[role=slider],[role=separator],[role=tablist]";
+  const kOwners = "dialog,.order,[role=menu],[role=listbox],[role=slider],[role=separator],[role=tablist]";
   return isTyping(target) || (target instanceof HTMLElement && target.closest(kOwners) !== null);
 }
 

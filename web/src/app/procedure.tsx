@@ -1,12 +1,15 @@
 /** The steps of the assembly: done, at hand, to come. */
 
+import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { movableSteps } from "../model/order";
 import { takingApart } from "../model/apart";
 import { select } from "../model/view_state";
 import type { Step } from "../protocol/messages";
-import { store, view } from "./app_state";
+import { canSteer, store, view } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { OrderPanel } from "./order_panel";
 import { isInPlace, nameOfStep, stepText } from "./progress";
 
 /** Backwards while the product is taken apart. */
@@ -21,6 +24,7 @@ function shownSteps(): { steps: readonly Step[]; at: number | null; isApart: boo
 export function Procedure() {
   const { steps, at, isApart } = shownSteps();
   const list = useRef<HTMLOListElement>(null);
+  const isOrdering = useSignal(false);
   useEffect(() => {
     const now = list.current?.querySelector<HTMLElement>("[aria-current]");
     if (now && list.current) {
@@ -30,6 +34,9 @@ export function Procedure() {
   }, [at, steps.length]);
   if (steps.length === 0) {
     return null;
+  }
+  if (isOrdering.value && !isApart) {
+    return <OrderPanel key={store.scene.value?.epoch} close={() => (isOrdering.value = false)} />;
   }
   const isDone = (step: Step, k: number) =>
     (at !== null && k < at) || (!isApart && step.kind === "insert" && isInPlace(step.occurrence));
@@ -56,6 +63,19 @@ export function Procedure() {
           );
         })}
       </ol>
+      {isApart || movableSteps(steps).length < 2 ? null : (
+        <p class="card-buttons">
+          <button
+            type="button"
+            class="small-button"
+            data-testid="order-open"
+            disabled={store.demo.value || !canSteer()}
+            onClick={() => (isOrdering.value = true)}
+          >
+            {t("order.open")}
+          </button>
+        </p>
+      )}
       {at !== null && at >= steps.length ? <p class="quiet">{t(isApart ? "apart.done" : "steps.doneAll")}</p> : null}
     </section>
   );

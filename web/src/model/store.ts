@@ -191,6 +191,7 @@ export function makeStore() {
     recording: signal<Recording | null>(null),
     recordings: signal<readonly RecordingEntry[] | null>(null),
     loading: signal<Loading | null>(null),
+    orderProgress: signal<{ stage: string; fraction: number } | null>(null),
     /** The share of a file that has gone to the server, while it goes. */
     upload: signal<{ file: string; fraction: number } | null>(null),
     failure: signal<ServerError | null>(null),

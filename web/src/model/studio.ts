@@ -238,6 +238,9 @@ export class Studio {
       case "history":
         store.history.value = { undo: event.undo, redo: event.redo };
         break;
+      case "order_progress":
+        store.orderProgress.value = event;
+        break;
       case "demo":
         store.demo.value = event.on;
         break;

@@ -1,0 +1,114 @@
+// Handlers of the commands "find_orders", "check_order" and "set_order" in docs/protocol.md.
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "studio/event_json.h"
+#include "studio/hub.h"
+#include "studio/json_fields.h"
+
+namespace hvas::studio {
+namespace {
+
+using assembly::CheckedOrder;
+using assembly::OrderPlan;
+using product::OccurrenceId;
+using simulation::FoundOrder;
+using simulation::OrderRules;
+
+/** An order of which everything is known that a client sees. */
+struct DescribedOrder {
+  const OrderRules& rules;
+  const std::vector<std::size_t>& moves;
+  const std::vector<std::vector<std::size_t>>* blocking;  ///< By place; null: none is blocked.
+  const FoundOrder* order;                                ///< Null: it is not possible.
+  const assembly::OrderStatics* statics;                  ///< Null: they are not known.
+};
+
+Json LeadersOf(const OrderRules& rules, const std::vector<std::size_t>& moves) {
+  std::vector<OccurrenceId> leaders;
+  leaders.reserve(moves.size());
+  for (const std::size_t move : moves) {
+    leaders.push_back(rules.moves[move].parts.front());
+  }
+  return ToJson(leaders);
+}
+
+Json MakeOrderJson(const DescribedOrder& described) {
+  Json moves = Json::array();
+  for (std::size_t place = 0; place < described.moves.size(); ++place) {
+    const simulation::FreeMove& move = described.rules.moves[described.moves[place]];
+    const std::vector<OccurrenceId> members(move.parts.begin() + 1, move.parts.end());
+    const bool has_holds = described.statics != nullptr && described.statics->holds[place];
+    moves.push_back(
+        {{"occurrence", move.parts.front().value()},
+         {"members", ToJson(members)},
+         {"blocked_by", described.blocking != nullptr
+                            ? LeadersOf(described.rules, (*described.blocking)[place])
+                            : Json::array()},
+         {"in_tool_space",
+          described.order != nullptr
+              ? ToJson(simulation::ListInToolSpace(described.rules, *described.order, place))
+              : Json::array()},
+         {"holds", has_holds ? ToJson(*described.statics->holds[place]) : Json(nullptr)}});
+  }
+  const FoundOrder* order = described.order;
+  const auto count = [order](int simulation::OrderCounts::*which) {
+    return order != nullptr ? Json(order->counts.*which) : Json(nullptr);
+  };
+  using simulation::OrderCounts;
+  return {{"moves", std::move(moves)},
+          {"is_possible", order != nullptr},
+          {"cost", order != nullptr ? Json(order->cost) : Json(nullptr)},
+          {"turns", count(&OrderCounts::turns)},
+          {"direction_changes", count(&OrderCounts::direction_changes)},
+          {"tool_changes", count(&OrderCounts::tool_changes)},
+          {"loose", count(&OrderCounts::loose)},
+          {"cramped", count(&OrderCounts::cramped)}};
+}
+
+Result<Json> Describe(const Result<OrderPlan>& plan) {
+  if (!plan) {
+    return Unexpected(plan.error());
+  }
+  Json orders = Json::array();
+  for (std::size_t i = 0; i < plan->search.orders.size(); ++i) {
+    const FoundOrder& order = plan->search.orders[i];
+    orders.push_back(MakeOrderJson({plan->rules, order.moves, nullptr, &order,
+                                    i < plan->statics.size() ? &plan->statics[i] : nullptr}));
+  }
+  return Json{{"orders", std::move(orders)}, {"is_ended_early", plan->search.is_ended_early}};
+}
+
+Result<Json> Describe(const OrderRules& rules, const Result<CheckedOrder>& checked) {
+  if (!checked) {
+    return Unexpected(checked.error());
+  }
+  return MakeOrderJson({rules, checked->moves, &checked->blocking,
+                        checked->order ? &*checked->order : nullptr,
+                        checked->statics ? &*checked->statics : nullptr});
+}
+
+}  // namespace
+
+Result<Json> Hub::DoFindOrders(const Caller& caller, const protocol::FindOrdersCommand&) {
+  const auto posted =
+      workbench_->orders().Find([events = &workbench_->events(), to = caller.id,
+                                 id = IdOf(caller.command)](const Result<OrderPlan>& plan) {
+        events->Publish(MakeDeferredReply(to, id, Describe(plan)));
+      });
+  return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
+}
+
+Result<Json> Hub::DoCheckOrder(const Caller& caller, const protocol::CheckOrderCommand& command) {
+  const auto posted = workbench_->orders().Check(
+      command.occurrences,
+      [events = &workbench_->events(), to = caller.id, id = IdOf(caller.command)](
+          const OrderRules& rules, const Result<CheckedOrder>& checked) {
+        events->Publish(MakeDeferredReply(to, id, Describe(rules, checked)));
+      });
+  return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
+}
+
+}  // namespace hvas::studio
