@@ -61,8 +61,8 @@ struct OrderPlan {
 
 /** What an order comes to that somebody has thought of. */
 struct CheckedOrder {
-  std::vector<std::size_t> moves;  ///< Of the rules, in this order.
-  /** For each place, the moves before it of which one at least stands in each way of the move
+  std::vector<std::size_t> moves;  ///< Numbers of the moves in the rules, in this order.
+  /** The moves before each place of which one at least stands in each way of the move
    there; empty where it can come. */
   std::vector<std::vector<std::size_t>> blocking;
   /** The order with the ways of least cost; none where a move cannot come. */

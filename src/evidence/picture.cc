@@ -14,6 +14,8 @@ constexpr int kSamples = 2;        // along each edge of a pixel
 constexpr double kRoom = 0.94;     // of the picture, that the box may fill
 constexpr double kSharpCos = 0.8;  // normals that differ by more make an edge
 constexpr double kAmbient = 0.42;  // Share of light that falls on what faces away: a choice.
+constexpr std::array<double, 3> kMark{0.86, 0.08, 0.12};  // Red of marked faces: a choice.
+constexpr double kHiddenMark = 0.45;  // Share of red where something hides a marked face: a choice.
 
 /** What is seen at a sample. */
 struct Sample {
@@ -21,6 +23,11 @@ struct Sample {
   std::uint32_t occurrence{std::numeric_limits<std::uint32_t>::max()};
   std::array<float, 3> normal{};
   std::array<float, 3> color{};
+  double mark_depth{std::numeric_limits<double>::infinity()};  // Of the nearest marked face.
+
+  [[nodiscard]] bool has_mark() const { return !std::isinf(mark_depth); }
+
+  [[nodiscard]] bool has_seen_mark() const { return has_mark() && mark_depth <= depth; }
 
   [[nodiscard]] bool is_empty() const { return std::isinf(depth); }
 };
@@ -33,25 +40,41 @@ class Canvas {
         height_(kSamples * projection.height()),
         samples_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
-  void Draw(const product::Product& product) {
-    for (const product::Occurrence& occurrence : product.occurrences) {
-      const product::Part& part = product.part_of(occurrence.id);
-      // The mesh for the eye, or where there is none that for contact.
-      const bool is_light = !part.display_mesh.triangles.empty();
-      const product::Mesh& mesh = is_light ? part.display_mesh : part.mesh;
-      for (const product::Face& face : part.faces) {
-        const product::Color color = face.color.value_or(part.color);
-        const std::size_t first = is_light ? face.first_display_triangle : face.first_triangle;
-        const std::size_t count = is_light ? face.display_triangle_count : face.triangle_count;
-        for (std::size_t t = first; t < first + count; ++t) {
-          std::array<Vec3, 3> p_W;
-          for (std::size_t k = 0; k < 3; ++k) {
-            p_W[k] = occurrence.X_WB * mesh.vertices[mesh.triangles[t][k]];
-          }
-          DrawTriangle(p_W, occurrence.id.value(), {color.r, color.g, color.b});
+  void Draw(const PictureBody& body, std::uint32_t number) {
+    const product::Part& part = *body.part;
+    // The mesh for the eye, or where there is none that for contact.
+    const bool is_light = !part.display_mesh.triangles.empty();
+    const product::Mesh& mesh = is_light ? part.display_mesh : part.mesh;
+    for (std::size_t f = 0; f < part.faces.size(); ++f) {
+      const product::Face& face = part.faces[f];
+      const product::Color color = body.color.value_or(face.color.value_or(part.color));
+      const std::size_t first = is_light ? face.first_display_triangle : face.first_triangle;
+      const std::size_t count = is_light ? face.display_triangle_count : face.triangle_count;
+      is_marked_ = std::binary_search(body.marked_faces.begin(), body.marked_faces.end(), f);
+      for (std::size_t t = first; t < first + count; ++t) {
+        std::array<Vec3, 3> p_W;
+        for (std::size_t k = 0; k < 3; ++k) {
+          p_W[k] = body.X_WB * mesh.vertices[mesh.triangles[t][k]];
         }
+        DrawTriangle(p_W, number, {color.r, color.g, color.b});
       }
     }
+  }
+
+  void Draw(const std::vector<PictureBody>& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      Draw(bodies[i], static_cast<std::uint32_t>(i));
+    }
+  }
+
+  [[nodiscard]] double RateMarks() const {
+    double marked = 0;
+    double seen = 0;
+    for (const Sample& sample : samples_) {
+      marked += sample.has_mark() ? 1 : 0;
+      seen += sample.has_seen_mark() ? 1 : 0;
+    }
+    return marked > 0 ? seen / marked * seen / static_cast<double>(samples_.size()) : 0;
   }
 
   /** RGBA, row by row, each behind a byte that says it is not filtered, as PNG has them. */
@@ -88,16 +111,25 @@ class Canvas {
       for (int x = std::max(0, static_cast<int>(left)); x <= x_end; ++x) {
         const Vec3 share = SharesAt(p, area, x + 0.5, y + 0.5);
         const double depth = share.x() * p[0].z() + share.y() * p[1].z() + share.z() * p[2].z();
-        Sample& sample = samples_[IndexOf(x, y)];
-        if (share.minCoeff() >= 0 && depth < sample.depth) {
-          sample = {depth,
-                    occurrence,
-                    {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-                     static_cast<float>(normal.z())},
-                    color};
+        if (share.minCoeff() >= 0) {
+          Put({depth,
+               occurrence,
+               {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                static_cast<float>(normal.z())},
+               color},
+              &samples_[IndexOf(x, y)]);
         }
       }
     }
+  }
+
+  void Put(const Sample& drawn, Sample* sample) const {
+    const double mark_depth =
+        is_marked_ ? std::min(sample->mark_depth, drawn.depth) : sample->mark_depth;
+    if (drawn.depth < sample->depth) {
+      *sample = drawn;
+    }
+    sample->mark_depth = mark_depth;
   }
 
   /** Barycentric coordinates. */
@@ -146,8 +178,9 @@ class Canvas {
                                      light.y() * static_cast<double>(sample.normal[1]) +
                                      light.z() * static_cast<double>(sample.normal[2]));
       const double shade = IsEdge(sample_x, sample_y) ? 0.25 : kAmbient + (1 - kAmbient) * facing;
+      const double red = sample.has_seen_mark() ? 1 : sample.has_mark() ? kHiddenMark : 0;
       for (std::size_t c = 0; c < 3; ++c) {
-        sum[c] += shade * static_cast<double>(sample.color[c]);
+        sum[c] += shade * ((1 - red) * static_cast<double>(sample.color[c]) + red * kMark[c]);
       }
       sum[3] += 1;
     }
@@ -161,6 +194,7 @@ class Canvas {
   const Projection& projection_;
   int width_;
   int height_;
+  bool is_marked_{false};  // The face that is being drawn.
   std::vector<Sample> samples_;
 };
 
@@ -199,9 +233,13 @@ std::string MakePng(const std::string& rows, int width, int height) {
 
 }  // namespace
 
-Projection::Projection(const spatial::Box& box_W, int width, int height)
+Vec3 UsualView() {
+  return Vec3(0.75, -1.0, 0.7).normalized();
+}
+
+Projection::Projection(const spatial::Box& box_W, int width, int height, const Vec3& to_eye_W)
     : centre_W_(box_W.centre()), width_(width), height_(height) {
-  const Vec3 to_eye = Vec3(0.75, -1.0, 0.7).normalized();
+  const Vec3 to_eye = to_eye_W.normalized();
   const Vec3 right = Vec3::UnitZ().cross(to_eye).normalized();
   R_VW_.row(0) = right.transpose();
   R_VW_.row(1) = to_eye.cross(right).transpose();
@@ -214,10 +252,25 @@ Projection::Projection(const spatial::Box& box_W, int width, int height)
       0.5 * kRoom * std::min(width / std::max(half_x, kLeast), height / std::max(half_y, kLeast));
 }
 
-std::string MakePicture(const product::Product& product, const Projection& projection) {
+std::string MakePicture(const std::vector<PictureBody>& bodies, const Projection& projection) {
   Canvas canvas(projection);
-  canvas.Draw(product);
+  canvas.Draw(bodies);
   return MakePng(canvas.Develop(), projection.width(), projection.height());
+}
+
+double RateMarks(const std::vector<PictureBody>& bodies, const Projection& projection) {
+  Canvas canvas(projection);
+  canvas.Draw(bodies);
+  return canvas.RateMarks();
+}
+
+std::string MakePicture(const product::Product& product, const Projection& projection) {
+  std::vector<PictureBody> bodies;
+  bodies.reserve(product.occurrences.size());
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    bodies.push_back({&product.part_of(occurrence.id), occurrence.X_WB, std::nullopt, {}});
+  }
+  return MakePicture(bodies, projection);
 }
 
 }  // namespace hvas::evidence

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,11 +9,14 @@
 
 namespace hvas::evidence {
 
-/** Where the world is in a picture: parallel, from the front right above. */
+/** The direction to the eye from the front right above. */
+[[nodiscard]] Vec3 UsualView();
+
+/** Where the world is in a picture: parallel. */
 class Projection {
  public:
-  /** Fits a box into so many pixels. */
-  Projection(const spatial::Box& box_W, int width, int height);
+  /** Fits a box into so many pixels. @param to_eye_W  Direction to the eye, not vertical. */
+  Projection(const spatial::Box& box_W, int width, int height, const Vec3& to_eye_W = UsualView());
 
   /** Pixels from the upper left, and depth away from the eye [m]. */
   [[nodiscard]] Vec3 Project(const Vec3& p_WQ) const {
@@ -34,8 +38,25 @@ class Projection {
   int height_;
 };
 
-/** A product as drawn, shaded, with edges, before nothing, as a PNG file: smooth at the edges, the
- same bytes every time. */
+/** A part somewhere in a picture. */
+struct PictureBody {
+  const product::Part* part{nullptr};
+  spatial::Pose X_WB;
+  std::optional<product::Color> color;      ///< None: those of the part and its faces.
+  std::vector<std::uint32_t> marked_faces;  ///< Sorted. Red, also through what hides them.
+};
+
+/** Parts, shaded, with edges, before nothing, as a PNG file: smooth at the edges, the same bytes
+ every time. */
+[[nodiscard]] std::string MakePicture(const std::vector<PictureBody>& bodies,
+                                      const Projection& projection);
+
+/** The share of the marked faces in the projection that nothing hides, times the share of the
+ picture that they fill. */
+[[nodiscard]] double RateMarks(const std::vector<PictureBody>& bodies,
+                               const Projection& projection);
+
+/** A product as drawn, as MakePicture() of its parts. */
 [[nodiscard]] std::string MakePicture(const product::Product& product,
                                       const Projection& projection);
 

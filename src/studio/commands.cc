@@ -62,6 +62,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::FindOrdersCommand>(&Hub::DoFindOrders),
       Entry<protocol::CheckOrderCommand>(&Hub::DoCheckOrder),
       Entry<protocol::SetOrderCommand>(&Hub::DoSetOrder),
+      Entry<protocol::ExplainGapCommand>(&Hub::DoExplainGap),
       Entry<protocol::UndoCommand>(&Hub::DoUndo),
       Entry<protocol::RedoCommand>(&Hub::DoRedo),
       Entry<protocol::ResetCommand>(&Hub::DoReset),

@@ -136,6 +136,7 @@ class Hub {
   Result<Json> DoTakeOut(const Caller& caller, const protocol::TakeOutCommand& command);
   Result<Json> DoFindOrders(const Caller& caller, const protocol::FindOrdersCommand& command);
   Result<Json> DoCheckOrder(const Caller& caller, const protocol::CheckOrderCommand& command);
+  Result<Json> DoExplainGap(const Caller& caller, const protocol::ExplainGapCommand& command);
   Result<Json> DoSetOrder(const protocol::SetOrderCommand& command);
   Result<Json> DoUndo();
   Result<Json> DoRedo();

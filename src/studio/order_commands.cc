@@ -1,9 +1,11 @@
-// Handlers of the commands "find_orders", "check_order" and "set_order" in docs/protocol.md.
+// Handlers of the commands "find_orders", "check_order" and "explain_gap" in docs/protocol.md.
 #include <cstddef>
-#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "evidence/gap_picture.h"
+#include "pages/embedded_image.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
 #include "studio/json_fields.h"
@@ -90,6 +92,16 @@ Result<Json> Describe(const OrderRules& rules, const Result<CheckedOrder>& check
                         checked->statics ? &*checked->statics : nullptr});
 }
 
+Result<Json> Describe(const simulation::Model& model, const Result<simulation::GapReason>& reason) {
+  if (!reason) {
+    return Unexpected(reason.error());
+  }
+  const std::string png = evidence::MakeGapPicture(model, *reason);
+  return Json{{"lines", simulation::FormatGapReason(model, *reason)},
+              {"picture", png.empty() ? png : pages::MakePngAddress(png)},
+              {"picture_about", evidence::DescribeGapPicture(model, *reason)}};
+}
+
 }  // namespace
 
 Result<Json> Hub::DoFindOrders(const Caller& caller, const protocol::FindOrdersCommand&) {
@@ -107,6 +119,16 @@ Result<Json> Hub::DoCheckOrder(const Caller& caller, const protocol::CheckOrderC
       [events = &workbench_->events(), to = caller.id, id = IdOf(caller.command)](
           const OrderRules& rules, const Result<CheckedOrder>& checked) {
         events->Publish(MakeDeferredReply(to, id, Describe(rules, checked)));
+      });
+  return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
+}
+
+Result<Json> Hub::DoExplainGap(const Caller& caller, const protocol::ExplainGapCommand& command) {
+  const auto posted = workbench_->orders().Explain(
+      product::OccurrenceId(command.occurrence),
+      [events = &workbench_->events(), to = caller.id, id = IdOf(caller.command)](
+          const simulation::Model& model, const Result<simulation::GapReason>& reason) {
+        events->Publish(MakeDeferredReply(to, id, Describe(model, reason)));
       });
   return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());
 }

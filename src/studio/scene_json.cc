@@ -164,6 +164,14 @@ Json MatesOf(const Model& model) {
   return all;
 }
 
+Json LeftOutOf(const simulation::Model& model) {
+  Json left_out = Json::array();
+  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+    left_out.push_back({{"occurrence", gap.occurrence.value()}, {"reason", gap.reason}});
+  }
+  return left_out;
+}
+
 Json StepsOf(const Model& model) {
   Json all = Json::array();
   for (const SequenceStep& step : model.sequence.steps) {
@@ -217,12 +225,14 @@ Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
           {"occurrences", OccurrencesOf(model, state)},
           {"mates", MatesOf(model)},
           {"steps", StepsOf(model)},
+          {"left_out", LeftOutOf(model)},
           {"diagnostics", DiagnosticsOf(scene.diagnostics)}};
 }
 
 Json MakeShieldedSceneJson(const OpenScene& scene, const LiveState& state) {
   Json json = MakeSceneJson(scene, state);
   json["diagnostics"] = Json::array();
+  json["left_out"] = Json::array();
   json.erase("seed");
   for (Json& mate : json["mates"]) {
     mate["fit"] = nullptr;

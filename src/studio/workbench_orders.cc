@@ -21,6 +21,10 @@ cad::ProgressFn MakeOrderProgress(const EventBus* events) {
   };
 }
 
+std::function<void(double)> MakeStageProgress(const EventBus* events, std::string_view stage) {
+  return [report = MakeOrderProgress(events), stage](double fraction) { report(stage, fraction); };
+}
+
 }  // namespace
 
 Result<void> WorkbenchOrders::CheckOpen() const {
@@ -40,9 +44,7 @@ const OrderRules& WorkbenchOrders::RulesOf(const std::shared_ptr<const Model>& m
   if (model_ != model) {
     simulation::OrderRuleOptions options;
     options.stop = stop;
-    options.progress = [report = MakeOrderProgress(parts_.events)](double fraction) {
-      report("ways of the parts", fraction);
-    };
+    options.progress = MakeStageProgress(parts_.events, "ways of the parts");
     Keep(model, simulation::FindOrderRules(*model, options));
     if (stop.stop_requested()) {
       model_ = nullptr;  // Some rules are missing.
@@ -114,6 +116,20 @@ void WorkbenchOrders::DoSet(const std::vector<OccurrenceId>& occurrences,
           *scene, simulation::ListSteps(rules, *checked->order),
           {{"command", protocol::SetOrderCommand::kName}, {"occurrences", ToJson(occurrences)}}),
       kWhat);
+}
+
+Result<void> WorkbenchOrders::Explain(OccurrenceId id, const ExplainedFn& done) {
+  auto open = CheckOpen();
+  if (open) {
+    parts_.worker->Post([this, id, done](const std::stop_token& stop) {
+      const std::shared_ptr<const Model> model = parts_.live->scene()->model;
+      simulation::GapReasonOptions options;
+      options.stop = stop;
+      options.progress = MakeStageProgress(parts_.events, "why the part is left out");
+      done(*model, simulation::ExplainGap(*model, id, options));
+    });
+  }
+  return open;
 }
 
 }  // namespace hvas::studio

@@ -8,6 +8,7 @@
 #include "assembly/plan_order.h"
 #include "base/job_thread.h"
 #include "base/result.h"
+#include "simulation/gap_reason.h"
 #include "studio/event_bus.h"
 #include "studio/live_scene.h"
 #include "studio/scene_builder.h"
@@ -16,8 +17,8 @@
 namespace hvas::studio {
 
 /** Orders of assembly of the open product: finds some of low cost, checks one that the user has
- made, and makes one the order of the scene. Any thread may call any function; all return at once,
- and leave the work to the worker. */
+ made, makes one the order of the scene, and explains why a part is left out. Any thread may call
+ any function; all return at once, and leave the work to the worker. */
 class WorkbenchOrders {
  public:
   using Model = simulation::Model;
@@ -35,6 +36,9 @@ class WorkbenchOrders {
   using CheckedFn = std::function<void(const simulation::OrderRules& rules,
                                        const Result<assembly::CheckedOrder>& order)>;
 
+  using ExplainedFn =
+      std::function<void(const Model& model, const Result<simulation::GapReason>& reason)>;
+
   explicit WorkbenchOrders(const Parts& parts) : parts_(parts) {}
 
   /** Finds orders of low cost. Reports progress by events. Errors: kNotFound where nothing is open;
@@ -49,6 +53,10 @@ class WorkbenchOrders {
    the order is not possible. Errors: those of LiveScene::CheckIdle. */
   [[nodiscard]] Result<void> Set(const std::vector<product::OccurrenceId>& occurrences);
 
+  /** Explains why a part cannot be brought in. Reports progress by events. Errors: kNotFound where
+   nothing is open; those of simulation::ExplainGap. */
+  [[nodiscard]] Result<void> Explain(product::OccurrenceId id, const ExplainedFn& done);
+
  private:
   [[nodiscard]] Result<void> CheckOpen() const;
   /** The rules of a model; they are found once. */
@@ -60,7 +68,7 @@ class WorkbenchOrders {
   const Parts parts_;
   // Used by the worker alone.
   std::shared_ptr<const Model> model_;
-  simulation::OrderRules rules_;  ///< Of model_.
+  simulation::OrderRules rules_;  ///< Rules of model_.
 };
 
 }  // namespace hvas::studio

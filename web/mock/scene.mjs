@@ -119,6 +119,7 @@ export function makeScene(hvas, file, epoch) {
     subassemblies: product.subassemblies,
     occurrences,
     mates: product.mates.map((m) => makeMate(m, occurrences, product.features)),
+    left_out: [],
     steps: run.parts.map((p, k) => ({
       kind: k === 0 ? "base" : "insert",
       occurrence: p.id,

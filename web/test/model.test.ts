@@ -31,6 +31,7 @@ const scene: Scene = {
     makePart(4, "bolt 3", 2, { parent: 1 }),
   ],
   mates: [],
+  left_out: [],
   steps: [
     { kind: "base", occurrence: 0, members: [], way_in: [0, 0, -1], distance_m: 0 },
     { kind: "insert", occurrence: 1, members: [], way_in: [0, 0, -1], distance_m: 0.05 },

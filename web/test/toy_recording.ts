@@ -124,6 +124,7 @@ export const toyScene: Scene = {
     }),
   ),
   mates: [],
+  left_out: [],
   steps: [0, 1, 2].map((occurrence) => ({
     kind: occurrence === 0 ? "base" : "insert",
     occurrence,

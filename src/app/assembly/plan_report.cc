@@ -12,6 +12,8 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
+#include "evidence/gap_picture.h"
+#include "pages/embedded_image.h"
 #include "pages/html_page.h"
 
 namespace hvas::app {
@@ -341,6 +343,19 @@ std::string MakeComparison(const assembly::OrderPlan& plan) {
                             DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
 }
 
+/** Picture of why a part is left out; empty where there is none. */
+std::string MakeReasonPicture(const PlanReport& report, std::size_t gap) {
+  if (gap >= report.plan->reasons.size()) {
+    return {};
+  }
+  const simulation::GapReason& reason = report.plan->reasons[gap];
+  const std::string png = evidence::MakeGapPicture(*report.model, reason);
+  return png.empty()
+             ? png
+             : "<br>" + pages::MakeImage(png, evidence::DescribeGapPicture(*report.model, reason),
+                                         evidence::kGapPictureWidth, evidence::kGapPictureHeight);
+}
+
 /** What is left out, and why; empty where nothing is. */
 std::string MakeLeftOut(const PlanReport& report) {
   const std::vector<simulation::SequenceGap>& gaps = report.model->sequence.gaps;
@@ -351,7 +366,7 @@ std::string MakeLeftOut(const PlanReport& report) {
     for (const std::string& line : ListReasonLines(report, i)) {
       html += "<br>" + Escape(line);
     }
-    html += "</li>\n";
+    html += MakeReasonPicture(report, i) + "</li>\n";
   }
   return html.empty() ? html : "<h2>Left out</h2>\n<ul>\n" + html + "</ul>\n";
 }

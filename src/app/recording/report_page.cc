@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <openssl/evp.h>
 
 #include "base/units.h"
 #include "evidence/picture.h"
+#include "pages/embedded_image.h"
 #include "pages/html_page.h"
 #include "pages/svg_plot.h"
 #include "record/session_file.h"
@@ -42,15 +42,6 @@ constexpr const char* kStyle = R"(
 .way{fill:none;stroke-width:1.6;stroke-linejoin:round;opacity:.85}
 @media(prefers-color-scheme:dark){.w0{stroke:#6cb0ff}.w1{stroke:#ff9c66}.w2{stroke:#6fd08c}.w3{stroke:#b9a3ff}.w4{stroke:#aeb6bf}}
 )";
-
-std::string EncodeBase64(std::string_view bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // with the zero that it ends by
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                     reinterpret_cast<const unsigned char*>(bytes.data()),
-                                     static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
 
 std::string MetaOf(const Summary& summary, const char* key) {
   const auto found = summary.meta.find(key);
@@ -138,9 +129,8 @@ std::string MakeHead(const Summary& summary) {
 
 std::string MakeImage(const product::Product& product, const evidence::Projection& projection,
                       const std::string& what) {
-  return fmt::format("<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">",
-                     Escape(what), projection.width(), projection.height(),
-                     EncodeBase64(evidence::MakePicture(product, projection)));
+  return pages::MakeImage(evidence::MakePicture(product, projection), what, projection.width(),
+                          projection.height());
 }
 
 std::string MakeProductPicture(const Summary& summary) {

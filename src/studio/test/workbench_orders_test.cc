@@ -118,6 +118,18 @@ TEST_F(WorkbenchOrdersTest, AnOrderIsUsedAndUndone) {
   EXPECT_EQ(one.Inserted(), orders[0]);
 }
 
+TEST_F(WorkbenchOrdersTest, PartsAreExplained) {
+  Bench one("");
+  one.Open();
+  for (const std::uint32_t id : {1U, 1000U}) {
+    std::promise<Result<simulation::GapReason>> explained;
+    ASSERT_TRUE(one.bench.orders().Explain(
+        OccurrenceId(id),
+        [&](const simulation::Model&, const auto& reason) { explained.set_value(reason); }));
+    EXPECT_EQ(explained.get_future().get().has_value(), id == 1U);
+  }
+}
+
 TEST_F(WorkbenchOrdersTest, TheOrderIsPartOfTheWorkThatIsKept) {
   std::vector<std::vector<std::string>> orders;
   {

@@ -9,6 +9,7 @@ import { FitCard } from "./fit_card";
 import { number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
 import { isInPlace } from "./progress";
+import { LeftOutCard } from "./left_out_card";
 import { Procedure } from "./procedure";
 import { RemovalCard } from "./removal_card";
 import { RunCard } from "./run_card";
@@ -83,6 +84,7 @@ export function Inspector() {
       <StepsCard />
       <SummaryCard />
       <Procedure />
+      <LeftOutCard />
       <RunCard />
     </aside>
   );

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace hvas::pages {
+
+/** Address of a PNG file that has the file in itself ("data:image/png;base64,..."), for pages that
+ need nothing else. */
+[[nodiscard]] std::string MakePngAddress(std::string_view png);
+
+/** Element <img> of a PNG file. @param alt  What is to be seen, for who does not see it: plain
+ text.
+ @param width,height  Size on the page [px]. */
+[[nodiscard]] std::string MakeImage(std::string_view png, std::string_view alt, int width,
+                                    int height);
+
+}  // namespace hvas::pages
