@@ -71,7 +71,7 @@ spatial::Box BoxOf(const std::vector<PictureBody>& bodies) {
 Vec3 ChooseView(const std::vector<PictureBody>& bodies, const spatial::Box& box_W) {
   Vec3 best_W = UsualView();
   double best = RateMarks(bodies, Projection(box_W, kTrialWidth, kTrialHeight, best_W));
-  constexpr int kTurns = 8;
+  constexpr int kTurns = 8;  // Steps of 45 degrees: a choice.
   for (const double height : {0.6, -0.6}) {
     for (int turn = 0; turn < kTurns; ++turn) {
       const double angle = 2 * std::numbers::pi * (turn + 0.4) / kTurns;
