@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "planning/align_way.h"
 #include "planning/check_way.h"
 #include "planning/free_motion.h"
 #include "planning/moves.h"
@@ -182,6 +183,7 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
       screw = FreeScrew();
       path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
       path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
+      path = AlignWay(&probe, *path, step);
     }
   }
   double deepest = std::numeric_limits<double>::infinity();

@@ -25,6 +25,7 @@ constexpr double kLoosen = 1.5e-3;          // [m] back when it sticks in its ho
 constexpr double kLeadIn = 1e-3;            // [m] of travel until it is inside
 constexpr double kLookTime = 0.4;           // [s]
 constexpr double kCarefulSpeed = 0.012;     // [m/s]; what hits the hole tilted, wedges in it
+constexpr double kStuckBeforeSlack = 0.5;   // [s] until it pushes and turns by turns
 constexpr double kRockingRate = 3;          // [Hz]
 constexpr double kTwistingRate = 0.8;       // [Hz]
 constexpr double kFollowTime =
@@ -351,7 +352,13 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   }
   const spatial::Pose X_WG = WayAt(travel_);
   p_ref_ = X_WG.p() + OffsetBesideWay();
-  q_ref_ = TurnBesideWay() * X_WG.q();
+  q_ref_ = HasSlackWrist() ? X_WH_.q() : TurnBesideWay() * X_WG.q();
+}
+
+bool SimulatedPerson::HasSlackWrist() const noexcept {
+  constexpr double kHalf = 0.5;
+  return HasSlotToFind() && stuck_time_s_ > kStuckBeforeSlack &&
+         std::fmod(kTwistingRate * stuck_time_s_, 1) < kHalf;
 }
 
 const Vec3& SimulatedPerson::MotionOf(const OperatorInput& input) const noexcept {
@@ -490,7 +497,11 @@ void SimulatedPerson::Rock(const Vec3& d, bool is_slow) noexcept {
   const double round = kRockingTurn * rocking_angle_;
   // In its hole it is upright: what has to find a slot there is twisted.
   const Vec3 axis = is_twisting ? Vec3::UnitZ() : Vec3(std::cos(round), std::sin(round), 0);
-  const Vec3 wanted = tilt * (spatial::FrameFromZ(d) * axis);
+  Vec3 wanted = tilt * (spatial::FrameFromZ(d) * axis);
+  if (IsLedByEye()) {  // About the axis of the way it would go to and fro on it.
+    const Vec3 about = task_.way->RateAt(travel_).w.stableNormalized();
+    wanted -= wanted.dot(about) * about;
+  }
   const Vec3 step = dt_ / kRockingLag * (wanted - rocking_);
   // A light touch: what the part meets on its way round holds the hand up.
   const Vec3 lag = spatial::RotationBetween(X_WH_.q(), q_ref_);
@@ -583,9 +594,12 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
   // Where the way turns, the wrist is what is stiff. Around a corner the hand does not pull before
   // the part is there, unless it is stuck.
   const spatial::Twist rate = task_.way->RateAt(travel_);
-  const double stiffness =
-      options_.stiffness * rate.v.squaredNorm() + options_.turn_stiffness * rate.w.squaredNorm();
-  return std::min(input.workspace.scale * push_ / stiffness,
+  const double moving = rate.v.squaredNorm();
+  const double turning = rate.w.squaredNorm();
+  const double stiffness = options_.stiffness * moving + options_.turn_stiffness * turning;
+  // What its own arm takes to go on is no push.
+  const double drag = kCarefulSpeed * (options_.damping * moving + options_.turn_damping * turning);
+  return std::min((input.workspace.scale * push_ + drag) / stiffness,
                   kLeadOnWay + kLeadWhenStuck * stuck_time_s_);
 }
 

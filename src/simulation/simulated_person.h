@@ -215,6 +215,9 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] bool IsLedByEye() const noexcept;
   /** Whether the part is in a hole on a way that turns: it has to be turned right to go on. */
   [[nodiscard]] bool HasSlotToFind() const noexcept;
+  /** Whether it only pushes for a moment: stuck in a slot, what it twists against holds the part by
+   friction. */
+  [[nodiscard]] bool HasSlackWrist() const noexcept;
   /** Corrects, little by little, how far the part is beside its way, by what it sees; what a mate
    guides is turned about the way alone. */
   void FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept;
