@@ -46,8 +46,7 @@ void AddAxis(const ScrewAxis& axis, double near, std::vector<ScrewAxis>* axes) {
   }
 }
 
-// Axes of a shape's round faces in W, with the largest area of a face first.
-std::vector<ScrewAxis> ListRoundAxes(const contact::Shape& shape, const Pose& X_WB) {
+std::vector<double> ListFaceAreas(const contact::Shape& shape) {
   const contact::Shape::Data& data = shape.data();
   std::vector<double> area(data.exact.faces.size(), 0.0);
   for (std::size_t t = 0; t < data.mesh.triangles.size(); ++t) {
@@ -56,11 +55,21 @@ std::vector<ScrewAxis> ListRoundAxes(const contact::Shape& shape, const Pose& X_
     const Vec3 b = data.mesh.vertices[k[2]] - data.mesh.vertices[k[0]];
     area[data.mesh.face[t]] += 0.5 * a.cross(b).norm();
   }
+  return area;
+}
+
+bool IsRound(SurfaceKind kind) {
+  return kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone ||
+         kind == SurfaceKind::kTorus;
+}
+
+// Axes of a shape's round faces in W, with the largest area of a face first.
+std::vector<ScrewAxis> ListRoundAxes(const contact::Shape& shape, const Pose& X_WB) {
+  const contact::Shape::Data& data = shape.data();
+  const std::vector<double> area = ListFaceAreas(shape);
   std::vector<std::size_t> round;
   for (std::size_t f = 0; f < data.exact.faces.size(); ++f) {
-    const SurfaceKind kind = data.exact.faces[f].kind;
-    if (kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone ||
-        kind == SurfaceKind::kTorus) {
+    if (IsRound(data.exact.faces[f].kind)) {
       round.push_back(f);
     }
   }
@@ -73,6 +82,76 @@ std::vector<ScrewAxis> ListRoundAxes(const contact::Shape& shape, const Pose& X_
     axes.push_back({X_WC * surface.origin, (X_WC.q() * surface.axis).normalized(), 0});
   }
   return axes;
+}
+
+// A direction of planes and axes, either way, and the area of their faces.
+struct FaceDirection {
+  Vec3 unit_W;
+  double area{0};
+};
+
+void AddFaceDirections(const contact::Shape& shape, const Pose& X_WB,
+                       std::vector<FaceDirection>* directions) {
+  const contact::Shape::Data& data = shape.data();
+  const std::vector<double> area = ListFaceAreas(shape);
+  for (std::size_t f = 0; f < data.exact.faces.size(); ++f) {
+    const spatial::Surface& surface = data.exact.faces[f];
+    if (surface.kind != SurfaceKind::kPlane && !IsRound(surface.kind)) {
+      continue;
+    }
+    const Vec3 unit_W = (X_WB.q() * surface.axis).normalized();
+    const auto known =
+        std::find_if(directions->begin(), directions->end(), [&](const FaceDirection& one) {
+          return std::abs(one.unit_W.dot(unit_W)) > kSameDirection;
+        });
+    if (known != directions->end()) {
+      known->area += area[f];
+    } else {
+      directions->push_back({unit_W, area[f]});
+    }
+  }
+}
+
+// Three directions at right angles: those of the part's largest faces, then of those around it,
+// whatever the frame is in which they were drawn. Where that frame has the same, it is taken as it
+// is.
+Mat3 FindFrame(const Probe& probe) {
+  const WayProblem& problem = probe.problem();
+  const Mat3 R = problem.X_WB_start.R();
+  std::vector<FaceDirection> own;
+  AddFaceDirections(*problem.part, problem.X_WB_start, &own);
+  std::vector<FaceDirection> around;
+  for (const contact::BodyId body : probe.bodies()) {
+    AddFaceDirections(problem.scene->shape(body), problem.scene->pose(body), &around);
+  }
+  std::vector<Vec3> columns;
+  const auto add = [&columns](const Vec3& unit_W) {
+    constexpr double kApart = 0.5;  // Sine: 30 degrees from what is there.
+    Vec3 rest_W = unit_W;
+    for (const Vec3& column : columns) {
+      rest_W -= rest_W.dot(column) * column;
+    }
+    if (columns.size() < 3 && rest_W.norm() > kApart) {
+      columns.push_back(rest_W.normalized());
+    }
+  };
+  for (std::vector<FaceDirection>* list : {&own, &around}) {
+    std::stable_sort(list->begin(), list->end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+    for (const FaceDirection& direction : *list) {
+      add(direction.unit_W);
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    add(R.col(i));
+  }
+  Mat3 frame = R;
+  bool is_known = true;
+  for (int i = 0; i < 3; ++i) {
+    frame.col(i) = columns[static_cast<std::size_t>(i)];
+    is_known = is_known && (R.transpose() * frame.col(i)).cwiseAbs().maxCoeff() > kSameDirection;
+  }
+  return is_known ? R : frame;
 }
 
 std::vector<contact::Contact> ListStartContacts(Probe* probe) {
@@ -90,7 +169,7 @@ std::vector<Vec3> ListDirections(Probe* probe) {
     AddDirection(d, &directions);
   }
   const std::vector<contact::Contact> contacts = ListStartContacts(probe);
-  const Mat3 R = problem.X_WB_start.R();
+  const Mat3 R = FindFrame(*probe);
   std::vector<Vec3> normals;
   for (const contact::Contact& c : contacts) {
     if (normals.size() < 6) {
@@ -146,7 +225,7 @@ std::vector<ScrewAxis> ListAxes(Probe* probe) {
       }
     }
   }
-  const Mat3 R = problem.X_WB_start.R();
+  const Mat3 R = FindFrame(*probe);
   for (int i = 0; i < 3; ++i) {
     AddAxis({centre, R.col(i), 0}, near, &axes);
   }

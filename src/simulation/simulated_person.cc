@@ -356,7 +356,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
 }
 
 bool SimulatedPerson::HasSlackWrist() const noexcept {
-  constexpr double kHalf = 0.5;
+  constexpr double kHalf = 0.5;  // Of the time it pushes, as long as it turns: a choice.
   return HasSlotToFind() && stuck_time_s_ > kStuckBeforeSlack &&
          std::fmod(kTwistingRate * stuck_time_s_, 1) < kHalf;
 }

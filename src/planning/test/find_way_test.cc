@@ -101,6 +101,27 @@ TEST(FindWayTest, BayonetTurnsBeforeItGoesOut) {
   ExpectWay(testing::MakeBayonet(50e-6), 400'000);
 }
 
+TEST(FindWayTest, APartOnAnAxisTurnsAboutItAndGoesAlongItAlone) {
+  for (int frame = 0; frame < 3; ++frame) {
+    const Pose X_WA = frame == 0 ? Pose() : Askew(frame);
+    Placed placed(testing::MakeBayonet(200e-6), X_WA);
+    const ScrewAxis axis{X_WA.p(), X_WA.R().col(2), 0};
+    placed.problem.axes = {axis};
+    const WaySearch found = Find(placed.problem, 1, 400'000);
+    ASSERT_TRUE(found.way.has_value());
+    for (const Pose& X_WB : found.way->path) {
+      const Pose X_moved = X_WB * placed.problem.X_WB_start.Inverse();
+      const Vec3 gone = X_moved * axis.p_WQ - axis.p_WQ;
+      EXPECT_LT((X_moved.q() * axis.axis_W).cross(axis.axis_W).norm(), 1e-9);
+      EXPECT_LT(gone.cross(axis.axis_W).norm(), 1e-9);
+    }
+    const double step = CheckStepOf(placed.problem.tolerance);
+    EXPECT_GE(MeasureDensely(placed.problem, found.way->path, step),
+              -placed.problem.tolerance - 0.5 * step);
+    EXPECT_TRUE(IsOut(placed.problem, found.way->path.back()));
+  }
+}
+
 TEST(FindWayTest, KeyTurnsAQuarterInItsHole) {
   ExpectWay(testing::MakeKeyhole(50e-6), 400'000);
 }
