@@ -228,7 +228,7 @@ std::optional<FlexibleKind> FindFlexibleKind(std::string_view name) {
   return found == kFlexibleWords.end() ? std::nullopt : std::optional(found->kind);
 }
 
-std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
+std::optional<FlexiblePart> ClassifyFlexibleByWords(const Part& part) {
   if (const auto kind = FindFlexibleKind(part.name)) {
     return MakeFlexible(*kind, part, "its name");
   }
@@ -238,6 +238,13 @@ std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
   }
   if (HasOneOf(FoldName(part.name), kElasticMaterials)) {
     return MakeFlexible(of_rubber, part, "the material in its name");
+  }
+  return std::nullopt;
+}
+
+std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
+  if (auto by_words = ClassifyFlexibleByWords(part)) {
+    return by_words;
   }
   if (IsORing(part)) {
     return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");

@@ -44,6 +44,9 @@ struct FlexiblePart {
  kind; its occurrence is left open. None where a part is rigid. */
 [[nodiscard]] std::optional<FlexiblePart> ClassifyFlexible(const Part& part);
 
+/** The same by name and material alone. */
+[[nodiscard]] std::optional<FlexiblePart> ClassifyFlexibleByWords(const Part& part);
+
 /** What is known or stated of how a part gives; null where nothing is. */
 [[nodiscard]] const FlexiblePart* FindFlexible(const Product& product, OccurrenceId id);
 

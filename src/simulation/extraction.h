@@ -120,6 +120,11 @@ class Extraction {
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveBending(Unit* rest, const Unit& deferred);
 
+  /** Takes out the first of these parts that only their form says to give, as a ring of round
+   section, and that can go along a way that turns without giving. Each is looked at once, briefly.
+   @param deferred  As of TryRemoveTurning(). */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveRing(Unit* rest, const Unit& deferred);
+
   /** Takes out the first of these parts that can go along a way of several pieces, or one that
    turns, and erases it from them. Parts that are held by more than clearance as drawn are not
    tried, and all searches together take no more looks than kMostLooks, at no more points than
@@ -341,6 +346,10 @@ class Extraction {
   /** Searches for a way that turns, with as many looks at most. */
   [[nodiscard]] std::optional<SequenceStep> FindTurningWay(product::OccurrenceId id,
                                                            std::uint64_t budget);
+  /** Looks at those parts that are to be tried, with so many looks at most for each. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(
+      Unit* rest, const Unit& deferred, std::uint64_t budget,
+      const std::function<bool(product::OccurrenceId, const Search&)>& is_tried);
   /** Whether a mate holds a part by more than clearance: ways along it alone are true. */
   [[nodiscard]] bool IsHeldFirmly(product::OccurrenceId id) const;
 

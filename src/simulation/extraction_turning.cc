@@ -11,6 +11,7 @@
 #include "mates/mate_kind.h"
 #include "planning/check_way.h"
 #include "planning/way.h"
+#include "product/flexible.h"
 #include "simulation/extraction.h"
 #include "simulation/turning_way.h"
 
@@ -19,6 +20,8 @@ namespace {
 
 using product::MateKind;
 using product::OccurrenceId;
+
+constexpr std::uint64_t kBriefLooks = 10'000;  // Some seconds: a choice.
 
 }  // namespace
 
@@ -93,6 +96,27 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
   return MakeTurningStep(id, found->way->path, problem.part->box_B(), others);
 }
 
+std::optional<SequenceStep> Extraction::TryRemoveTurning(
+    Unit* rest, const Unit& deferred, std::uint64_t budget,
+    const std::function<bool(OccurrenceId, const Search&)>& is_tried) {
+  for (const bool is_deferred : {false, true}) {
+    for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
+      const OccurrenceId id = (*rest)[i];
+      if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred ||
+          !is_tried(id, searches_[id.index()]) || IsHeldFirmly(id) || IsSearchOver() ||
+          input_.stop.stop_requested()) {
+        continue;
+      }
+      if (auto step = FindTurningWay(id, std::min(budget, kMostLooks - looks_))) {
+        SetPresent({id}, false);
+        rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
+        return step;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit& deferred) {
   if (input_.shapes.empty() || input_.way_looks == 0) {
     return std::nullopt;
@@ -100,26 +124,29 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long. Of
   // our pairs with ways that turn, two in three are found by the first, all but three by the
   // second.
-  for (const std::uint64_t most : {std::uint64_t{10'000}, std::uint64_t{60'000}, kWayLooks}) {
+  for (const std::uint64_t most : {kBriefLooks, std::uint64_t{60'000}, kWayLooks}) {
     const std::uint64_t budget = std::min(most, input_.way_looks);
-    for (const bool is_deferred : {false, true}) {
-      for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
-        const OccurrenceId id = (*rest)[i];
-        const Search& before = searches_[id.index()];
-        if (std::binary_search(deferred.begin(), deferred.end(), id) != is_deferred ||
-            (before.looks >= budget && before.is_present == is_present_) || IsHeldFirmly(id) ||
-            IsSearchOver() || input_.stop.stop_requested()) {
-          continue;
-        }
-        if (auto step = FindTurningWay(id, std::min(budget, kMostLooks - looks_))) {
-          SetPresent({id}, false);
-          rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
-          return step;
-        }
-      }
+    const auto is_new = [&](OccurrenceId, const Search& before) {
+      return before.looks < budget || before.is_present != is_present_;
+    };
+    if (auto step = TryRemoveTurning(rest, deferred, budget, is_new)) {
+      return step;
     }
   }
   return std::nullopt;
+}
+
+std::optional<SequenceStep> Extraction::TryRemoveRing(Unit* rest, const Unit& deferred) {
+  if (input_.shapes.empty() || input_.way_looks == 0) {
+    return std::nullopt;
+  }
+  const auto is_ring = [&](OccurrenceId id, const Search& before) {
+    const product::FlexiblePart* flexible = product::FindFlexible(product_, id);
+    return before.looks == 0 && flexible != nullptr && flexible->allowance > 0 &&
+           flexible->kind != product::FlexibleKind::kStated &&
+           !product::ClassifyFlexibleByWords(product_.part_of(id));
+  };
+  return TryRemoveTurning(rest, deferred, std::min(kBriefLooks, input_.way_looks), is_ring);
 }
 
 std::string Extraction::ExplainTurning(OccurrenceId id) const {

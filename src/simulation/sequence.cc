@@ -238,6 +238,10 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
     removed->push_back(std::move(*step));
     return;
   }
+  if (std::optional<SequenceStep> turning = extraction_.TryRemoveRing(rest, connecting)) {
+    removed->push_back(std::move(*turning));
+    return;
+  }
   if (std::optional<SequenceStep> giving = extraction_.TryRemoveGiving(rest, connecting)) {
     removed->push_back(std::move(*giving));
     return;
