@@ -38,6 +38,8 @@ constexpr double kMostRocking = 0.12;    // [rad]
 constexpr double kRockingTime = 6;       // [s]
 constexpr double kRockingTurn = 0.12;    // of a turn about the way in, for each of rocking
 constexpr double kRockingLag = 0.02;     // [s]
+constexpr double kLeastTouch = 0.1;      // [N] that is felt as touch
+constexpr double kTouchOfLoad = 0.15;    // Of what the hand carries, the same
 constexpr double kYieldTime = 0.3;       // [s]; the wrist gives way to what it feels
 constexpr double kYieldReach = 2e-3;     // [m], no further than this
 constexpr double kErrorsOfEye = 3;       // Standard deviations of what it sees
@@ -344,7 +346,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
                    (is_careful && is_inside && !IsLedByEye() ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
-      if (task_.way == nullptr || is_slow) {
+      if ((task_.way == nullptr || is_slow) && FeelsTouch(input)) {
         YieldToTouch(d);  // On a way that turns, what comes behind the hand meets nothing yet.
       }
       Rock(d, is_slow);
@@ -443,6 +445,10 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
   const Vec3& d = task_.extraction_W;
   const Vec3 along = p_ref_ - task_.X_WG_goal.p();
   p_ref_ += (travel_ - along.dot(d)) * d;
+}
+
+bool SimulatedPerson::FeelsTouch(const OperatorInput& input) const noexcept {
+  return CalcAddedForce(input) > std::max(kLeastTouch, kTouchOfLoad * carried_force_.norm());
 }
 
 void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {

@@ -207,6 +207,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void CorrectHold(const OperatorInput& input) noexcept;
   /** Offset that moves to and fro, harder the longer the part sticks. */
   void Rock(const Vec3& d, bool is_slow) noexcept;
+  /** Whether the part is felt to be held by more than the hand may have its load wrong. */
+  [[nodiscard]] bool FeelsTouch(const OperatorInput& input) const noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
   void YieldToTouch(const Vec3& d) noexcept;
   /** Whether the part is further in than it ever was on this try. */
