@@ -44,7 +44,7 @@ struct FlexiblePart {
  kind; its occurrence is left open. None where a part is rigid. */
 [[nodiscard]] std::optional<FlexiblePart> ClassifyFlexible(const Part& part);
 
-/** The same by name and material alone. */
+/** Recognises it by name and material alone. */
 [[nodiscard]] std::optional<FlexiblePart> ClassifyFlexibleByWords(const Part& part);
 
 /** What is known or stated of how a part gives; null where nothing is. */
