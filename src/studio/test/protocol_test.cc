@@ -143,6 +143,20 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(Do({{"command", "reset"}}).is_null());
   PumpUntil("history");
 
+  const Json found = Do({{"command", "find_orders"}});
+  ASSERT_FALSE(found.is_null());
+  EXPECT_FALSE(found["orders"].empty());
+  const Json parts = Json::array({1});  // The peg is all that may change.
+  const Json checked = Do({{"command", "check_order"}, {"occurrences", parts}});
+  ASSERT_FALSE(checked.is_null());
+  EXPECT_EQ(checked["is_possible"], true);
+  EXPECT_FALSE(Do({{"command", "set_order"}, {"occurrences", parts}}).is_null());
+  PumpUntil("scene");
+  EXPECT_FALSE(Do({{"command", "explain_gap"}, {"occurrence", 1}}).is_null());
+  const Json twice = Json::array({1, 1});
+  EXPECT_TRUE(Do({{"command", "check_order"}, {"occurrences", twice}}).is_null());
+  EXPECT_TRUE(Do({{"command", "check_order"}, {"occurrences", {{"a", 1}}}}).is_null());
+
   EXPECT_FALSE(Do({{"command", "hands"}, {"count", 2}}).is_null());
   PumpUntil("hands");
   EXPECT_FALSE(Do({{"command", "use"}, {"hand", 1}, {"device", "pointer"}}).is_null());
