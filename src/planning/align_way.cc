@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
 #include "planning/check_way.h"
+#include "planning/face_pair.h"
 
 namespace hvas::planning {
 namespace {
@@ -29,16 +28,12 @@ constexpr int kCenterings = 12;      // Until the middle of a slot is found: a c
 constexpr double kStayWeight =
     0.02;  // Weight of staying, beside that of a pair of faces: a choice.
 
-using FacePair = std::tuple<contact::BodyId, std::uint32_t, std::uint32_t>;
-
 /** The nearest contact of each pair of faces. */
 std::map<FacePair, const contact::Contact*> ListNearest(
     std::span<const contact::Contact> contacts) {
   std::map<FacePair, const contact::Contact*> nearest;
   for (const contact::Contact& contact : contacts) {
-    const contact::Contact*& least =
-        nearest.try_emplace({contact.body, contact.held_face, contact.scene_face}, &contact)
-            .first->second;
+    const contact::Contact*& least = nearest.try_emplace(FacesOf(contact), &contact).first->second;
     least = contact.distance < least->distance ? &contact : least;
   }
   return nearest;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
 #include "planning/check_way.h"
+#include "planning/face_pair.h"
 
 namespace hvas::planning {
 namespace {
@@ -25,12 +25,6 @@ constexpr int kHalvings = 3;   // Of a move that does not help: a choice.
 // Weight of staying between the neighbours, beside that of a pair of faces: choices.
 constexpr double kStayBetween = 0.05;
 constexpr double kMostMove = 0.5;  // Of kClear: a pose moves no further at once, as planes turn.
-
-using FacePair = std::tuple<contact::BodyId, std::uint32_t, std::uint32_t>;
-
-FacePair FacesOf(const contact::Contact& c) {
-  return {c.body, c.held_face, c.scene_face};
-}
 
 /** What is near at a pose, by pairs of faces, so that each counts once whatever its samples. */
 struct Nearness {
