@@ -55,6 +55,7 @@ describe("the order of assembly", () => {
 
     // An order that was found is possible; dragged by the mouse it is an own one.
     await page.getByTestId("order-find").click();
+    await page.getByTestId("order-choice").waitFor({ timeout: 60_000 });
     assert.match(await waitForSummary(page), /^Cost \d+/);
     const choices = page.getByTestId("order-choice").locator("option");
     assert.ok((await choices.count()) >= 2);
