@@ -34,9 +34,8 @@ void Mark(std::uint32_t face, std::vector<std::uint32_t>* marked) {
 }
 
 std::vector<PictureBody> MakeBodies(const Model& model, const GapReason& reason) {
-  constexpr std::size_t kMostStops = 3;  // The deepest, as the text of a reason has them.
   std::map<OccurrenceId, std::vector<std::uint32_t>> marked;  // Faces of each part that is drawn.
-  for (std::size_t i = 0; i < std::min(kMostStops, reason.stops.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(simulation::kToldStops, reason.stops.size()); ++i) {
     const MetFaces& stop = reason.stops[i];
     if (stop.other.is_valid()) {
       Mark(stop.other_face, &marked[stop.other]);

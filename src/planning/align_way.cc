@@ -12,6 +12,7 @@
 
 #include "planning/check_way.h"
 #include "planning/face_pair.h"
+#include "sweep/path.h"
 
 namespace hvas::planning {
 namespace {
@@ -39,6 +40,11 @@ std::map<FacePair, const contact::Contact*> ListNearest(
   return nearest;
 }
 
+/** A move about an axis by an angle [rad], and along it [m]. */
+Pose MakeMove(const ScrewAxis& axis, double turn, double along) {
+  return sweep::MoveAlong({Vec3(turn * axis.axis_W), axis.p_WQ, Vec3(along * axis.axis_W)}, 1);
+}
+
 /** The pose, turned about the axis and moved along it from the first one, that is closest to
  another pose; none where the part is not nearly coaxial there. */
 std::optional<Pose> Align(const Probe& probe, const ScrewAxis& axis, const Pose& X_first,
@@ -54,8 +60,7 @@ std::optional<Pose> Align(const Probe& probe, const ScrewAxis& axis, const Pose&
   }
   const Quat upright = spatial::RotationTaking(tilted_W, axis.axis_W) * X_moved.q();
   const double turn = spatial::RotationVector(upright).dot(axis.axis_W);
-  const Quat about = spatial::RotationFromVector(Vec3(turn * axis.axis_W));
-  return Pose(about, Vec3(axis.p_WQ - about * axis.p_WQ + along * axis.axis_W)) * X_first;
+  return MakeMove(axis, turn, along) * X_first;
 }
 
 /** Moves a pose along the axis and about it to where the part is clear of others, as far as it can,
@@ -82,8 +87,7 @@ Pose Center(Probe* probe, const ScrewAxis& axis, const Pose& X_start) {
     }
     const Eigen::Vector2d move = normal.ldlt().solve(right);
     const double scale = std::min(1.0, kMostMove * clear / std::max(move.norm(), 1e-12));
-    const Quat about = spatial::RotationFromVector(Vec3(scale * move[1] / g * axis.axis_W));
-    X = Pose(about, Vec3(axis.p_WQ - about * axis.p_WQ + scale * move[0] * axis.axis_W)) * X;
+    X = MakeMove(axis, scale * move[1] / g, scale * move[0]) * X;
   }
   return X;
 }

@@ -112,46 +112,60 @@ void AddFaceDirections(const contact::Shape& shape, const Pose& X_WB,
   }
 }
 
+// Directions at right angles, three at most.
+class Frame {
+ public:
+  void Add(const Vec3& unit_W) {
+    constexpr double kApart = 0.5;  // Sine: 30 degrees from what is there. A choice.
+    Vec3 rest_W = unit_W;
+    for (int i = 0; i < count_; ++i) {
+      rest_W -= rest_W.dot(columns_.col(i)) * columns_.col(i);
+    }
+    if (!is_full() && rest_W.norm() > kApart) {
+      columns_.col(count_++) = rest_W.normalized();
+    }
+  }
+
+  // The largest faces first.
+  void Add(std::vector<FaceDirection> directions) {
+    std::stable_sort(directions.begin(), directions.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+    for (const FaceDirection& direction : directions) {
+      Add(direction.unit_W);
+    }
+  }
+
+  [[nodiscard]] bool is_full() const { return count_ == 3; }
+
+  [[nodiscard]] const Mat3& columns() const { return columns_; }
+
+ private:
+  Mat3 columns_{Mat3::Identity()};
+  int count_{0};
+};
+
 // Three directions at right angles: those of the part's largest faces, then of those around it,
 // whatever the frame is in which they were drawn. Where that frame has the same, it is taken as it
 // is.
 Mat3 FindFrame(const Probe& probe) {
   const WayProblem& problem = probe.problem();
   const Mat3 R = problem.X_WB_start.R();
+  Frame frame;
   std::vector<FaceDirection> own;
   AddFaceDirections(*problem.part, problem.X_WB_start, &own);
-  std::vector<FaceDirection> around;
-  for (const contact::BodyId body : probe.bodies()) {
-    AddFaceDirections(problem.scene->shape(body), problem.scene->pose(body), &around);
-  }
-  std::vector<Vec3> columns;
-  const auto add = [&columns](const Vec3& unit_W) {
-    constexpr double kApart = 0.5;  // Sine: 30 degrees from what is there.
-    Vec3 rest_W = unit_W;
-    for (const Vec3& column : columns) {
-      rest_W -= rest_W.dot(column) * column;
+  frame.Add(std::move(own));
+  if (!frame.is_full()) {
+    std::vector<FaceDirection> around;
+    for (const contact::BodyId body : probe.bodies()) {
+      AddFaceDirections(problem.scene->shape(body), problem.scene->pose(body), &around);
     }
-    if (columns.size() < 3 && rest_W.norm() > kApart) {
-      columns.push_back(rest_W.normalized());
-    }
-  };
-  for (std::vector<FaceDirection>* list : {&own, &around}) {
-    std::stable_sort(list->begin(), list->end(),
-                     [](const auto& a, const auto& b) { return a.area > b.area; });
-    for (const FaceDirection& direction : *list) {
-      add(direction.unit_W);
-    }
+    frame.Add(std::move(around));
   }
   for (int i = 0; i < 3; ++i) {
-    add(R.col(i));
+    frame.Add(Vec3(R.col(i)));
   }
-  Mat3 frame = R;
-  bool is_known = true;
-  for (int i = 0; i < 3; ++i) {
-    frame.col(i) = columns[static_cast<std::size_t>(i)];
-    is_known = is_known && (R.transpose() * frame.col(i)).cwiseAbs().maxCoeff() > kSameDirection;
-  }
-  return is_known ? R : frame;
+  const Mat3 cosines = (R.transpose() * frame.columns()).cwiseAbs();
+  return cosines.colwise().maxCoeff().minCoeff() > kSameDirection ? R : frame.columns();
 }
 
 std::vector<contact::Contact> ListStartContacts(Probe* probe) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -75,6 +76,10 @@ struct GapReason {
 /** How many looks at parts an explanation takes, about, unless another limit is given: some ten
  seconds for most parts. A choice. */
 inline constexpr std::uint64_t kGapLooks = 300'000;
+
+/** How many of the faces that stop a part are told, and shown in a picture: the deepest; what a
+ reader takes in at a glance. A choice. */
+inline constexpr std::size_t kToldStops = 3;
 
 struct GapReasonOptions {
   /** How many looks at parts it may take; it is looked at between trials, one of which takes

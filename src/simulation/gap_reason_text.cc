@@ -47,11 +47,10 @@ std::string DescribeWay(const Model& model, const GapReason& reason) {
   if (reason.stops.empty()) {
     return "no straight way out was looked at";
   }
-  constexpr std::size_t kMostPairs = 3;  // A line is read at a glance: a choice.
   std::string pairs;
   std::size_t shown = 0;
   for (const MetFaces& stop : reason.stops) {
-    if (shown == kMostPairs) {
+    if (shown == kToldStops) {
       break;
     }
     pairs += fmt::format("{}its {} meets the {} of {} {:.2f} mm deep", shown == 0 ? "" : "; ",

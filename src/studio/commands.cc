@@ -192,11 +192,11 @@ Result<Json> Hub::DoEdit(const Fields& command) {
 }
 
 Result<Json> Hub::DoMeasure(const protocol::MeasureCommand& command) {
-  const auto scene = workbench_->live().scene();
-  if (scene == nullptr) {
-    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
+  const auto scene = workbench_->live().FindScene();
+  if (!scene) {
+    return Unexpected(scene.error());
   }
-  return Measure(*scene->model, workbench_->live().state(), command.a, command.b);
+  return Measure(*(*scene)->model, workbench_->live().state(), command.a, command.b);
 }
 
 Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size_t>& hands) {

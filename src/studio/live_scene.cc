@@ -54,6 +54,10 @@ bool IsHolding(const LiveRun& run) {
   return false;
 }
 
+Unexpected FailNothingOpen() {
+  return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
+}
+
 }  // namespace
 
 void LiveScene::Show(const std::shared_ptr<const OpenScene>& scene, const LiveState& state,
@@ -254,9 +258,15 @@ Json LiveScene::DescribeStep() const {
   return now.scene != nullptr ? MakeStepEvent(*now.scene, now.state.next_step) : Json(nullptr);
 }
 
+Result<std::shared_ptr<const OpenScene>> LiveScene::FindScene() const {
+  auto open = scene();
+  return open != nullptr ? Result<std::shared_ptr<const OpenScene>>(std::move(open))
+                         : FailNothingOpen();
+}
+
 Result<void> LiveScene::CheckOpen() const {
   if (scene_ == nullptr) {
-    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
+    return FailNothingOpen();
   }
   if (is_demo_) {
     return Fail(ErrorCode::kInvalid, "the simulated person is working", "",

@@ -63,6 +63,9 @@ class LiveScene {
   /** Null while nothing is open. */
   [[nodiscard]] std::shared_ptr<const OpenScene> scene() const;
 
+  /** The open scene. Errors: kNotFound while nothing is open. */
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> FindScene() const;
+
   [[nodiscard]] LiveState state() const { return MakeSnapshot().state; }
 
   /** Scene and state of the same moment. */

@@ -35,10 +35,11 @@ Result<Json> Describe(const Result<std::shared_ptr<const SweptGlb>>& swept) {
 }  // namespace
 
 Result<Json> Hub::DoPath(const Caller& caller, const protocol::PathCommand& command) {
-  const auto scene = workbench_->live().scene();
-  if (scene == nullptr) {
-    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
+  const auto open = workbench_->live().FindScene();
+  if (!open) {
+    return Unexpected(open.error());
   }
+  const std::shared_ptr<const OpenScene>& scene = *open;
   const product::OccurrenceId id(command.occurrence);
   const product::Product& product = *scene->model->product;
   if (id.index() >= product.occurrences.size()) {

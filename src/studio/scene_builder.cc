@@ -11,6 +11,7 @@
 #include "simulation/order_rules.h"
 #include "simulation/order_search.h"
 #include "studio/commands.h"
+#include "studio/event_json.h"
 #include "studio/json_fields.h"
 #include "studio/saved_work.h"
 
@@ -106,35 +107,39 @@ Result<SharedScene> SceneBuilder::ApplyEdits(const OpenScene& opened,
     changed->edits = std::move(changes);
     scene = std::move(changed);
   }
-  return order ? RepeatOrder(*scene, *order) : Result<SharedScene>(scene);
-}
-
-SharedScene SceneBuilder::ChangeOrder(const OpenScene& before,
-                                      std::vector<simulation::SequenceStep> steps,
-                                      const Json& command) {
-  auto scene = std::make_shared<OpenScene>(before);
-  scene->model = simulation::ChangeOrder(*before.model, std::move(steps), {}, &scene->diagnostics);
-  std::erase_if(scene->edits, IsOrder);
-  scene->edits.push_back(command);
-  scene->epoch = ++last_epoch_;
-  return scene;
-}
-
-Result<SharedScene> SceneBuilder::RepeatOrder(const OpenScene& before, const Json& command) {
-  const auto wanted = protocol::ReadFields<protocol::SetOrderCommand>(command);
+  if (!order) {
+    return scene;
+  }
+  const auto wanted = protocol::ReadFields<protocol::SetOrderCommand>(*order);
   if (!wanted) {
     return Unexpected(wanted.error());
   }
-  const simulation::OrderRules rules = simulation::FindOrderRules(*before.model, {});
-  const auto checked = assembly::CheckOrder(*before.model, rules, wanted->occurrences, {});
+  return ChangeOrder(*scene, simulation::FindOrderRules(*scene->model, {}), wanted->occurrences,
+                     {});
+}
+
+Result<SharedScene> SceneBuilder::ChangeOrder(const OpenScene& before,
+                                              const simulation::OrderRules& rules,
+                                              const std::vector<product::OccurrenceId>& occurrences,
+                                              const std::stop_token& stop) {
+  assembly::PlanOptions options;
+  options.stop = stop;
+  const auto checked = assembly::CheckOrder(*before.model, rules, occurrences, options);
   if (!checked) {
     return Unexpected(checked.error());
   }
   if (!checked->order) {
-    return Fail(ErrorCode::kInvalid, "the order of the saved work is not possible any more",
-                before.name, "find an order anew");
+    return Fail(ErrorCode::kInvalid, "some part cannot come where it is in this order", before.name,
+                "check the order, and move that part");
   }
-  return ChangeOrder(before, simulation::ListSteps(rules, *checked->order), command);
+  auto scene = std::make_shared<OpenScene>(before);
+  scene->model = simulation::ChangeOrder(
+      *before.model, simulation::ListSteps(rules, *checked->order), stop, &scene->diagnostics);
+  std::erase_if(scene->edits, IsOrder);
+  scene->edits.push_back(
+      {{"command", protocol::SetOrderCommand::kName}, {"occurrences", ToJson(occurrences)}});
+  scene->epoch = ++last_epoch_;
+  return scene;
 }
 
 Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& edit,

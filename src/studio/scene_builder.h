@@ -11,6 +11,7 @@
 #include "cad/import.h"
 #include "contact/shape_cache.h"
 #include "product/product.h"
+#include "simulation/order_rules.h"
 #include "studio/edit.h"
 #include "studio/json.h"
 #include "studio/open_scene.h"
@@ -59,14 +60,15 @@ class SceneBuilder {
                                                                 const cad::ProgressFn& progress);
 
   /** Changes the order of assembly of a scene. Where the scene's product is changed later, its
-   order is found anew. @param steps  Of all parts. @param command  Command "set_order" to repeat it
-   from. */
-  [[nodiscard]] std::shared_ptr<const OpenScene> ChangeOrder(
-      const OpenScene& before, std::vector<simulation::SequenceStep> steps, const Json& command);
+   order is found anew. Errors: those of assembly::CheckOrder; kInvalid for an order that is not
+   possible.
+   @param rules  Those of the scene's model.
+   @param occurrences  As of the command "set_order". */
+  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ChangeOrder(
+      const OpenScene& before, const simulation::OrderRules& rules,
+      const std::vector<product::OccurrenceId>& occurrences, const std::stop_token& stop);
 
  private:
-  [[nodiscard]] Result<std::shared_ptr<const OpenScene>> RepeatOrder(const OpenScene& before,
-                                                                     const Json& command);
   [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(
       product::Product product, const std::string& name, const cad::ProgressFn& progress,
       Diagnostics* diagnostics) const;

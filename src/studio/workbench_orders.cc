@@ -3,7 +3,6 @@
 #include <string_view>
 #include <utility>
 
-#include "studio/commands.h"
 #include "studio/event_json.h"
 
 namespace hvas::studio {
@@ -27,13 +26,6 @@ std::function<void(double)> MakeStageProgress(const EventBus* events, std::strin
 
 }  // namespace
 
-Result<void> WorkbenchOrders::CheckOpen() const {
-  if (parts_.live->scene() == nullptr) {
-    return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example first");
-  }
-  return {};
-}
-
 void WorkbenchOrders::Keep(const std::shared_ptr<const Model>& model, const OrderRules& rules) {
   model_ = model;
   rules_ = rules;
@@ -53,38 +45,40 @@ const OrderRules& WorkbenchOrders::RulesOf(const std::shared_ptr<const Model>& m
   return rules_;
 }
 
-Result<void> WorkbenchOrders::Find(const FoundFn& done) {
-  auto open = CheckOpen();
-  if (open) {
-    parts_.worker->Post([this, done](const std::stop_token& stop) {
-      const std::shared_ptr<const Model> model = parts_.live->scene()->model;
-      assembly::PlanOptions options;
-      options.most_reasons = 0;  // The parts that stay out have theirs already.
-      options.progress = MakeOrderProgress(parts_.events);
-      options.stop = stop;
-      const auto plan = assembly::PlanOrder(*model, options);
-      if (plan && !stop.stop_requested()) {
-        Keep(model, plan->rules);
-      }
-      done(plan);
-    });
+Result<void> WorkbenchOrders::Post(ModelJob job) {
+  const auto open = parts_.live->FindScene();
+  if (!open) {
+    return Unexpected(open.error());
   }
-  return open;
+  parts_.worker->Post([this, job = std::move(job)](const std::stop_token& stop) {
+    job(parts_.live->scene()->model, stop);
+  });
+  return {};
+}
+
+Result<void> WorkbenchOrders::Find(const FoundFn& done) {
+  return Post([this, done](const std::shared_ptr<const Model>& model, const std::stop_token& stop) {
+    assembly::PlanOptions options;
+    options.most_reasons = 0;  // The parts that stay out have theirs already.
+    options.progress = MakeOrderProgress(parts_.events);
+    options.stop = stop;
+    const auto plan = assembly::PlanOrder(*model, options);
+    if (plan && !stop.stop_requested()) {
+      Keep(model, plan->rules);
+    }
+    done(plan);
+  });
 }
 
 Result<void> WorkbenchOrders::Check(const std::vector<OccurrenceId>& occurrences,
                                     const CheckedFn& done) {
-  auto open = CheckOpen();
-  if (open) {
-    parts_.worker->Post([this, occurrences, done](const std::stop_token& stop) {
-      const std::shared_ptr<const Model> model = parts_.live->scene()->model;
-      const OrderRules& rules = RulesOf(model, stop);
-      assembly::PlanOptions options;
-      options.stop = stop;
-      done(rules, assembly::CheckOrder(*model, rules, occurrences, options));
-    });
-  }
-  return open;
+  return Post([this, occurrences, done](const std::shared_ptr<const Model>& model,
+                                        const std::stop_token& stop) {
+    const OrderRules& rules = RulesOf(model, stop);
+    assembly::PlanOptions options;
+    options.stop = stop;
+    done(rules, assembly::CheckOrder(*model, rules, occurrences, options));
+  });
 }
 
 Result<void> WorkbenchOrders::Set(const std::vector<OccurrenceId>& occurrences) {
@@ -98,38 +92,25 @@ Result<void> WorkbenchOrders::Set(const std::vector<OccurrenceId>& occurrences) 
 
 void WorkbenchOrders::DoSet(const std::vector<OccurrenceId>& occurrences,
                             const std::stop_token& stop) {
-  const std::shared_ptr<const OpenScene> scene = parts_.live->scene();
-  const OrderRules& rules = RulesOf(scene->model, stop);
-  assembly::PlanOptions options;
-  options.stop = stop;
-  const auto checked = assembly::CheckOrder(*scene->model, rules, occurrences, options);
-  if (!checked || !checked->order) {
-    const Error error =
-        checked ? Error{ErrorCode::kInvalid, "some part cannot come where it is in this order",
-                        scene->name, "check the order, and move that part"}
-                : checked.error();
-    parts_.events->Publish({{"event", "failed"}, {"file", kWhat}, {"error", ToJson(error)}});
-    return;
+  const std::shared_ptr<const OpenScene> before = parts_.live->scene();
+  const auto after =
+      parts_.builder->ChangeOrder(*before, RulesOf(before->model, stop), occurrences, stop);
+  if (after) {
+    parts_.edits->Replace(*after, kWhat);
+  } else {
+    parts_.events->Publish(
+        {{"event", "failed"}, {"file", kWhat}, {"error", ToJson(after.error())}});
   }
-  parts_.edits->Replace(
-      parts_.builder->ChangeOrder(
-          *scene, simulation::ListSteps(rules, *checked->order),
-          {{"command", protocol::SetOrderCommand::kName}, {"occurrences", ToJson(occurrences)}}),
-      kWhat);
 }
 
 Result<void> WorkbenchOrders::Explain(OccurrenceId id, const ExplainedFn& done) {
-  auto open = CheckOpen();
-  if (open) {
-    parts_.worker->Post([this, id, done](const std::stop_token& stop) {
-      const std::shared_ptr<const Model> model = parts_.live->scene()->model;
-      simulation::GapReasonOptions options;
-      options.stop = stop;
-      options.progress = MakeStageProgress(parts_.events, "why the part is left out");
-      done(*model, simulation::ExplainGap(*model, id, options));
-    });
-  }
-  return open;
+  return Post(
+      [this, id, done](const std::shared_ptr<const Model>& model, const std::stop_token& stop) {
+        simulation::GapReasonOptions options;
+        options.stop = stop;
+        options.progress = MakeStageProgress(parts_.events, "why the part is left out");
+        done(*model, simulation::ExplainGap(*model, id, options));
+      });
 }
 
 }  // namespace hvas::studio

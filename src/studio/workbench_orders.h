@@ -58,7 +58,12 @@ class WorkbenchOrders {
   [[nodiscard]] Result<void> Explain(product::OccurrenceId id, const ExplainedFn& done);
 
  private:
-  [[nodiscard]] Result<void> CheckOpen() const;
+  using ModelJob =
+      std::function<void(const std::shared_ptr<const Model>& model, const std::stop_token& stop)>;
+
+  /** Has the worker do a job on the model of the scene that is open by then. Errors: kNotFound
+   while nothing is open. */
+  [[nodiscard]] Result<void> Post(ModelJob job);
   /** The rules of a model; they are found once. */
   const simulation::OrderRules& RulesOf(const std::shared_ptr<const Model>& model,
                                         const std::stop_token& stop);

@@ -25,22 +25,7 @@ constexpr product::OccurrenceId kKeptPeg(1);
 /** A workbench that keeps its work, and one that takes it up. */
 class KeptWorkTest : public ::testing::Test {
  protected:
-  struct Bench {
-    explicit Bench(const fs::path& file) : bench(OptionsWith(file)) {
-      bench.on_event = [this](Json event) { log.Add(std::move(event)); };
-    }
-
-    ~Bench() { bench.Stop(); }
-
-    static WorkbenchOptions OptionsWith(const fs::path& file) {
-      WorkbenchOptions options = testing::SmallBench();
-      options.work_file = file;
-      return options;
-    }
-
-    testing::EventLog log;
-    Workbench bench;
-  };
+  using Bench = testing::LoggedBench;
 
   static void Open(Bench* one) {
     one->bench.opener().Open("peg.step", "peg");

@@ -71,4 +71,13 @@ WorkbenchOptions SmallBench() {
   return options;
 }
 
+LoggedBench::LoggedBench(const std::filesystem::path& work_file)
+    : bench([&work_file] {
+        WorkbenchOptions options = SmallBench();
+        options.work_file = work_file;
+        return options;
+      }()) {
+  bench.on_event = [this](Json event) { log.Add(std::move(event)); };
+}
+
 }  // namespace hvas::studio::testing

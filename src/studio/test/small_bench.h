@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -34,5 +35,18 @@ class EventLog {
  "missing" cannot be opened. Contact shapes are
  made once in a program; its recordings are deleted at its end. */
 [[nodiscard]] WorkbenchOptions SmallBench();
+
+/** Such a workbench with its events, which keeps its work in a file; empty: it keeps none. */
+struct LoggedBench {
+  explicit LoggedBench(const std::filesystem::path& work_file);
+
+  ~LoggedBench() { bench.Stop(); }
+
+  LoggedBench(const LoggedBench&) = delete;
+  LoggedBench& operator=(const LoggedBench&) = delete;
+
+  EventLog log;
+  Workbench bench;
+};
 
 }  // namespace hvas::studio::testing

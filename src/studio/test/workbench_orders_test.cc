@@ -23,25 +23,15 @@ using product::OccurrenceId;
 /** Peg with a collar, clamp over it and cap on it, in a block. */
 class WorkbenchOrdersTest : public ::testing::Test {
  protected:
-  struct Bench {
-    explicit Bench(const fs::path& file) : bench(OptionsWith(file)) {
-      bench.on_event = [this](Json event) { log.Add(std::move(event)); };
-    }
-
-    ~Bench() { bench.Stop(); }
-
-    static WorkbenchOptions OptionsWith(const fs::path& file) {
-      WorkbenchOptions options = testing::SmallBench();
-      options.work_file = file;
-      return options;
-    }
+  struct Bench : testing::LoggedBench {
+    using LoggedBench::LoggedBench;
 
     void Open() {
       bench.opener().Open("cap.step", "cap");
       ASSERT_TRUE(log.Await("scene"));
     }
 
-    [[nodiscard]] std::vector<OccurrenceId> Find(const std::vector<std::string>& names) const {
+    [[nodiscard]] std::vector<OccurrenceId> Find(const std::vector<std::string>& names) {
       std::vector<OccurrenceId> found;
       for (const std::string& name : names) {
         for (const auto& occurrence : bench.live().scene()->model->product->occurrences) {
@@ -64,9 +54,6 @@ class WorkbenchOrdersTest : public ::testing::Test {
       }
       return names;
     }
-
-    testing::EventLog log;
-    mutable Workbench bench;
   };
 
   /** The two orders that are possible; the one that the scene does not have comes second. */

@@ -11,6 +11,7 @@ function Row({ part }: { part: LeftOut }) {
   const isBusy = useSignal(false);
   const explain = async () => {
     isBusy.value = true;
+    store.orderProgress.value = null;
     reason.value = await studio.command({ command: "explain_gap", occurrence: part.occurrence });
     isBusy.value = false;
   };

@@ -147,6 +147,7 @@ export function OrderPanel({ close }: { close: () => void }) {
     asked.current += 1;
     const turn = asked.current;
     isBusy.value = true;
+    store.orderProgress.value = null;
     const answer = await work();
     if (turn === asked.current) {
       isBusy.value = false;
