@@ -43,6 +43,11 @@ Result<std::size_t> FindMove(const Model& model, const OrderRules& rules, const 
 
 Result<std::vector<OrderWish>> ListWishes(const Model& model, const OrderRules& rules,
                                           const PlanOptions& options) {
+  if (options.order.size() == 1) {  // It wishes for nothing, but has to mean a part.
+    if (const auto only = FindMove(model, rules, options.order.front()); !only) {
+      return Unexpected(only.error());
+    }
+  }
   std::vector<std::pair<std::string, std::string>> pairs = options.before;
   for (std::size_t i = 1; i < options.order.size(); ++i) {
     pairs.emplace_back(options.order[i - 1], options.order[i]);

@@ -85,6 +85,8 @@ TEST(PlanTest, WishesAreObeyedAndContradictionsSaid) {
                 {"gear_pump.step", "oil seal is to come before", "in the way"});
   ExpectRefusal({"plan", pump, "--before", "oil sael", "cover"}, {"oil sael"});
   ExpectRefusal({"plan", pump, "--base", "no such part"}, {"no such part"});
+  ExpectRefusal({"plan", pump, "--order", "no such part"}, {"no such part"});
+  ExpectRefusal({"plan", pump, "--order", "gasket,no such part"}, {"no such part"});
 }
 
 TEST(PlanTest, DamagedPlansAreRefused) {
