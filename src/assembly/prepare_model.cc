@@ -18,6 +18,8 @@ simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options) {
   compile.steps = options.steps;
   compile.shape_cache = options.shape_cache;
   compile.progress = options.progress;
+  compile.on_first_parts = options.on_first_parts;
+  compile.least_gain = options.least_gain;
   compile.shape.stop = options.stop;
   return compile;
 }

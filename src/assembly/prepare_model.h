@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -27,8 +29,11 @@ struct PrepareOptions {
   std::vector<simulation::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
-  std::stop_token stop;                              ///< Ends the preparation.
-  std::string name;  ///< Name of the product in errors; empty: Product::source.
+  /** As of simulation::CompileOptions; may be null. */
+  std::function<void(const std::shared_ptr<const simulation::Model>& model)> on_first_parts;
+  std::chrono::duration<double> least_gain{simulation::CompileOptions().least_gain};
+  std::stop_token stop;  ///< Ends the preparation.
+  std::string name;      ///< Name of the product in errors; empty: Product::source.
 };
 
 /** Makes the cache of contact shapes in a directory; null without a directory. */

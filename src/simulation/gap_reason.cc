@@ -513,7 +513,7 @@ GapReason GapExplainer::Explain() {
     reason_.present = std::move(*earlier);
   } else {
     is_order_given = false;
-    Unit gone = input_.tools;
+    Unit gone = input_.absent;
     for (const SequenceGap& gap : model_.sequence.gaps) {
       if (gap.occurrence == id) {
         break;

@@ -21,8 +21,9 @@ HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, 
     for (Hand& hand : hands_) {
       hand.tick.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
                                    SurfaceOf(model.product->part_of(body.occurrence).material)});
-      hand.tick.SetLoose(id, body.role != BodyRole::kFixture);
+      hand.tick.SetLoose(id, body.role == BodyRole::kPart || body.role == BodyRole::kTool);
     }
+    scene_.SetEnabled(id, body.role != BodyRole::kPending);
   }
   for (const product::ContactPair& pair : model.product->contact_pairs) {
     const auto find = [&model](product::OccurrenceId id) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
+#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -19,6 +21,7 @@
 #include "product/accessories.h"
 #include "simulation/actual_faces.h"
 #include "simulation/extraction.h"
+#include "simulation/first_parts.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/mate_way.h"
 #include "simulation/model_limits.h"
@@ -90,6 +93,10 @@ double PlaceOnShelf(Model* model) {
 void MakeFits(Model* model, Diagnostics* diagnostics) {
   for (ModelMate& compiled : model->mates) {
     const product::Mate& mate = model->product->mates[compiled.id.index()];
+    if (model->bodies[mate.a.occurrence.index()].role == BodyRole::kPending ||
+        model->bodies[mate.b.occurrence.index()].role == BodyRole::kPending) {
+      continue;
+    }
     const Vec3 way_W = FindWayOut(model->sequence, mate);
     compiled.fit = MakeFitForce(*model->product,
                                 mate.kind == product::MateKind::kPrismatic && way_W.norm() > 0
@@ -258,7 +265,7 @@ SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
   SequenceInput input;
   input.product = model.product.get();
   input.scene = scene;
-  input.tools = model.accessories.tools;
+  input.absent = model.accessories.tools;
   input.fixtures = model.accessories.fixtures;
   if (!model.product->flexible.empty()) {
     input.give_limits.assign(model.bodies.size(), 0);
@@ -267,8 +274,12 @@ SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
     }
   }
   for (const Body& body : model.bodies) {
-    (void)scene->Add(body.shape, body.X_WB_goal);
+    const contact::BodyId id = scene->Add(body.shape, body.X_WB_goal);
     input.shapes.push_back(body.shape);
+    if (body.role == BodyRole::kPending) {
+      scene->SetEnabled(id, false);
+      input.absent.push_back(body.occurrence);
+    }
   }
   for (const ModelMate& mate : model.mates) {
     input.faces_a.push_back(mate.faces_a);
@@ -374,9 +385,20 @@ haptics::MateFaces CollectMateFaces(const product::Part& part,
 
 namespace {
 
-using PartShapes = std::vector<std::shared_ptr<const contact::Shape>>;
+/** Makes the boxes that stand for the shapes that are not there. Errors: those of MakeBoxShape. */
+Result<PartShapes> MakeMissingBoxes(const Product& product, const PartShapes& shapes) {
+  PartShapes boxes(shapes.size());
+  for (const product::PartId id : ListWithoutShape(shapes)) {
+    auto box = MakeBoxShape(product.parts[id.index()]);
+    if (!box) {
+      return Unexpected(box.error());
+    }
+    boxes[id.index()] = std::move(*box);
+  }
+  return boxes;
+}
 
-/** Compiles a product whose parts have their shapes.
+/** Compiles a product; parts without a shape are pending.
  @param with_screws  Gets the product with mates for the pairs that come apart along a screw that no
  mate describes; where there are any, the result is null. Null: they are not asked for. */
 Result<std::shared_ptr<const Model>> CompileWithShapes(
@@ -395,14 +417,19 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
   model->product = product;
   model->seed = options.seed;
   model->pairs = options.pairs;
+  const auto boxes = MakeMissingBoxes(*product, shapes);
+  if (!boxes) {
+    return Unexpected(boxes.error());
+  }
   for (const product::Occurrence& occurrence : product->occurrences) {
+    const std::size_t part = occurrence.part.index();
     model->bodies.push_back({occurrence.id,
-                             shapes[occurrence.part.index()],
+                             shapes[part] != nullptr ? shapes[part] : (*boxes)[part],
                              MakeMass(product->part_of(occurrence.id)),
                              occurrence.X_WB,
                              occurrence.X_WB,
                              nullptr,
-                             BodyRole::kPart,
+                             shapes[part] != nullptr ? BodyRole::kPart : BodyRole::kPending,
                              {}});
   }
   GiveRoles(model.get());
@@ -494,6 +521,55 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
   return std::shared_ptr<const Model>(std::move(model));
 }
 
+/** Compiles the parts whose shapes are there, as well as is possible soon: without ways that turn,
+ and without reasons for what finds no way without the others. */
+Result<std::shared_ptr<const Model>> CompileFirst(
+    const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
+    const CompileOptions& options) {
+  CompileOptions first;
+  first.seed = options.seed;
+  first.pairs = options.pairs;
+  first.shape.stop = options.shape.stop;
+  first.way_looks = 0;
+  Diagnostics unheeded;
+  const auto compiled = CompileWithShapes(product, shapes, first, nullptr, &unheeded);
+  if (!compiled) {
+    return compiled;
+  }
+  auto model = std::make_shared<Model>(**compiled);
+  model->sequence.gaps.clear();
+  return std::shared_ptr<const Model>(std::move(model));
+}
+
+/** Builds the shapes of all parts: first those with which somebody can begin, where the caller
+ wants a model of these, and where the others take long. */
+Result<void> BuildAllShapes(const std::shared_ptr<const product::Product>& product,
+                            const CompileOptions& options, PartShapes* shapes) {
+  ShapesControl control{options.shape, options.shape_cache.get(), options.threads, nullptr};
+  control.progress = [&options](double fraction) {
+    if (options.progress) {
+      options.progress("contact shapes", fraction);
+    }
+  };
+  const FirstParts first = options.on_first_parts ? ChooseFirstParts(*product) : FirstParts();
+  if (!first.parts.empty()) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (auto built = AddShapes(*product, first.parts, control, shapes); !built) {
+      return built;
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    if (taken * (1 - first.share) >= options.least_gain * first.share) {
+      if (const auto model = CompileFirst(product, *shapes, options)) {
+        options.on_first_parts(*model);
+        // One core is left to whoever begins.
+        const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+        control.threads = std::max(1U, (options.threads > 0 ? options.threads : cores) - 1);
+      }
+    }
+  }
+  return AddShapes(*product, ListWithoutShape(*shapes), control, shapes);
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Product> product,
@@ -508,11 +584,9 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
     }
   };
   report("contact shapes", 0);
-  const auto shapes =
-      BuildShapes(*product, {options.shape, options.shape_cache.get(), options.threads,
-                             [&report](double fraction) { report("contact shapes", fraction); }});
-  if (!shapes) {
-    return Unexpected(shapes.error());
+  PartShapes shapes(product->parts.size());
+  if (const auto built = BuildAllShapes(product, options, &shapes); !built) {
+    return Unexpected(built.error());
   }
   const auto problem =
       options.shape_cache != nullptr ? options.shape_cache->TakeProblem() : std::nullopt;
@@ -521,12 +595,12 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   }
   const std::shared_ptr<const product::Product> drawn = std::move(product);
   std::shared_ptr<const product::Product> with_screws;
-  auto model = CompileWithShapes(drawn, *shapes, options, &with_screws, diagnostics);
+  auto model = CompileWithShapes(drawn, shapes, options, &with_screws, diagnostics);
   if (with_screws == nullptr) {
     return model;
   }
   // What was found to be a screw is one from now on, and the order is made with it.
-  return CompileWithShapes(with_screws, *shapes, options, nullptr, diagnostics);
+  return CompileWithShapes(with_screws, shapes, options, nullptr, diagnostics);
 }
 
 std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -26,6 +28,7 @@ enum class BodyRole : std::uint8_t {
   kPart,     ///< Part of the product.
   kTool,     ///< It is held, and turns fasteners; no step of the assembly puts it in.
   kFixture,  ///< It stands where it was put, and is met.
+  kPending,  ///< A part whose contact shape is not there yet: it is seen, and not met.
 };
 
 /** Tools and fixtures among the occurrences of a product, as its tree has them
@@ -58,6 +61,8 @@ struct ModelMate {
   std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
 };
 
+struct Model;
+
 struct CompileOptions {
   std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
   fits::PairChoice pairs{fits::PairChoice::kOfKind};
@@ -73,6 +78,12 @@ struct CompileOptions {
   unsigned threads{0};                               ///< That build shapes; 0: one a core.
   std::uint64_t way_looks{kWayLooks};  ///< Limits the search for ways that turn, for each part.
   std::function<void(const std::string& stage, double fraction)> progress;
+  /** Called by the calling thread with a model of the parts that are ready, long before the others
+   are; never where that is no gain. All others are pending in it. May be null. */
+  std::function<void(const std::shared_ptr<const Model>& model)> on_first_parts;
+  /** It is no gain where the shapes of the others take less than this, by what those of the first
+   took. A choice, as a person waits. */
+  std::chrono::duration<double> least_gain{1.5};
 };
 
 /** Immutable; shared by all loops. A change of fit or mate compiles a new one. */
@@ -93,6 +104,13 @@ struct Model {
 /** Counts the bodies that belong to the product: neither tools nor fixtures. */
 [[nodiscard]] inline std::size_t CountParts(const Model& model) {
   return model.bodies.size() - model.accessories.tools.size() - model.accessories.fixtures.size();
+}
+
+/** Counts the parts whose contact shapes are not there yet. */
+[[nodiscard]] inline std::size_t CountPending(const Model& model) {
+  return static_cast<std::size_t>(
+      std::count_if(model.bodies.begin(), model.bodies.end(),
+                    [](const Body& body) { return body.role == BodyRole::kPending; }));
 }
 
 /** Builds shapes, fits, the order of assembly and the layout of the parts on the table.

@@ -110,13 +110,13 @@ class CutSearch {
 }  // namespace
 
 Neighbours FindNeighbours(const product::Product& product, const contact::Scene& scene,
-                          const std::vector<OccurrenceId>& tools) {
+                          const std::vector<OccurrenceId>& absent) {
   Neighbours neighbours(product.occurrences.size());
-  const auto is_tool = [&tools](OccurrenceId id) {
-    return std::find(tools.begin(), tools.end(), id) != tools.end();
+  const auto is_absent = [&absent](OccurrenceId id) {
+    return std::find(absent.begin(), absent.end(), id) != absent.end();
   };
   const auto connect = [&](OccurrenceId a, OccurrenceId b) {
-    if (a != b && !is_tool(a) && !is_tool(b)) {
+    if (a != b && !is_absent(a) && !is_absent(b)) {
       neighbours[a.index()].push_back(b);
       neighbours[b.index()].push_back(a);
     }

@@ -12,10 +12,10 @@ using Neighbours = std::vector<std::vector<product::OccurrenceId>>;
 
 /** Finds for each part the parts that it has a mate with, or touches as drawn to 0.1 mm.
  @param scene  All parts at their drawn poses; body index = occurrence index.
- @param tools  Parts that hold nothing and are not held. */
+ @param absent  Parts that hold nothing and are not held. */
 [[nodiscard]] Neighbours FindNeighbours(const product::Product& product,
                                         const contact::Scene& scene,
-                                        const std::vector<product::OccurrenceId>& tools);
+                                        const std::vector<product::OccurrenceId>& absent);
 
 /** Lists those of some parts whose removal would leave others, which are connected with them now,
  without a connection through neighbours: the cut vertices of their graph (Tarjan, SIAM J. Computing

@@ -71,6 +71,9 @@ std::vector<contact::BodyId> OverlapSearch::ListExamined(OccurrenceId id) const 
 void OverlapSearch::FindDeeper(double depth) {
   for (const product::Occurrence& occurrence : input_.product->occurrences) {
     const contact::BodyId self(occurrence.id.index());
+    if (!input_.scene->is_enabled(self)) {
+      continue;
+    }
     const std::vector<contact::IgnoredPair> ignored = ignored_of_(occurrence.id);
     contact::QueryOptions query;
     query.margin = -depth;

@@ -13,9 +13,24 @@ namespace hvas::simulation {
 enum class Placement : std::uint8_t {
   kLoose,  ///< The part is on the table, or falling.
   kHeld,
-  kPlaced,  ///< The part is in the product, or in a subassembly that is being put together.
-  kParked,  ///< The part is on the shelf with its subassembly.
+  kPlaced,   ///< The part is in the product, or in a subassembly that is being put together.
+  kParked,   ///< The part is on the shelf with its subassembly.
+  kPending,  ///< The part cannot be taken as long as its contact shape is not there.
 };
+
+/** Where a body is before anybody has moved it. */
+[[nodiscard]] constexpr Placement BeginningOf(BodyRole role) noexcept {
+  switch (role) {
+    case BodyRole::kFixture:
+      return Placement::kPlaced;
+    case BodyRole::kPending:
+      return Placement::kPending;
+    case BodyRole::kPart:
+    case BodyRole::kTool:
+      break;
+  }
+  return Placement::kLoose;
+}
 
 /** Where a part is, and what it does there. */
 struct PartState {

@@ -23,8 +23,7 @@ PhysicsSide::PhysicsSide(std::shared_ptr<const Model> model, const haptics::Tick
       hands_(hands) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     parts_[i].X_WB = model_->bodies[i].X_WB_start;
-    parts_[i].placement =
-        model_->bodies[i].role == BodyRole::kFixture ? Placement::kPlaced : Placement::kLoose;
+    parts_[i].placement = BeginningOf(model_->bodies[i].role);
   }
   for (std::size_t i = 0; i < hands; ++i) {
     hands_[i].reports_energy = options[i].controls_passivity;

@@ -22,7 +22,7 @@ class Planner {
       : input_(input),
         product_(*input.product),
         extraction_(input, nullptr),
-        neighbours_(FindNeighbours(product_, *input.scene, input.tools)) {}
+        neighbours_(FindNeighbours(product_, *input.scene, input.absent)) {}
 
   Sequence Plan();
 
@@ -323,12 +323,12 @@ Sequence Planner::Plan() {
   Sequence sequence;
   sequence.neighbours = neighbours_;
   Unit all;
-  extraction_.SetPresent(input_.tools, false);
+  extraction_.SetPresent(input_.absent, false);
   const auto is_in = [](const Unit& unit, OccurrenceId id) {
     return std::find(unit.begin(), unit.end(), id) != unit.end();
   };
   for (const product::Occurrence& occurrence : product_.occurrences) {
-    if (!is_in(input_.tools, occurrence.id) && !is_in(input_.fixtures, occurrence.id)) {
+    if (!is_in(input_.absent, occurrence.id) && !is_in(input_.fixtures, occurrence.id)) {
       all.push_back(occurrence.id);
     }
   }

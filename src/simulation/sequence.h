@@ -128,7 +128,7 @@ struct SequenceInput {
   /** How many looks at a part the search for ways that turn may take; 0: none are searched for. */
   std::uint64_t way_looks{kWayLooks};
   product::OccurrenceId base;                   ///< What stays in the fixture; invalid: found.
-  std::vector<product::OccurrenceId> tools;     ///< They are not there.
+  std::vector<product::OccurrenceId> absent;    ///< Tools, and what is not ready: not there.
   std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.
   std::function<void(double fraction)> progress;
   std::stop_token stop;  ///< Ends the planning early; the sequence is then incomplete.

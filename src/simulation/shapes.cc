@@ -36,10 +36,11 @@ struct PlannedPart {
   unsigned threads;
 };
 
-std::vector<PlannedPart> PlanParts(const product::Product& product, unsigned cores) {
+std::vector<PlannedPart> PlanParts(const product::Product& product,
+                                   const std::vector<product::PartId>& parts, unsigned cores) {
   std::vector<PlannedPart> planned;
-  for (std::size_t i = 0; i < product.parts.size(); ++i) {
-    planned.push_back({i, 1});
+  for (const product::PartId id : parts) {
+    planned.push_back({id.index(), 1});
   }
   const auto size_of = [&product](const PlannedPart& item) {
     return product.parts[item.part].mesh.triangles.size();
@@ -60,13 +61,12 @@ std::vector<PlannedPart> PlanParts(const product::Product& product, unsigned cor
 
 }  // namespace
 
-Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
-    const product::Product& product, const ShapesControl& control) {
-  std::vector<std::shared_ptr<const contact::Shape>> shapes(product.parts.size());
+Result<void> AddShapes(const product::Product& product, const std::vector<product::PartId>& parts,
+                       const ShapesControl& control, PartShapes* shapes) {
   std::vector<Error> errors(product.parts.size());
   const unsigned cores =
       control.threads > 0 ? control.threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::vector<PlannedPart> planned = PlanParts(product, cores);
+  const std::vector<PlannedPart> planned = PlanParts(product, parts, cores);
   const auto build = [&](std::size_t k) {
     const std::size_t i = planned[k].part;
     contact::ShapeOptions options = control.shape;
@@ -75,24 +75,43 @@ Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
     auto shape = control.cache != nullptr ? control.cache->LoadOrBuild(source, options)
                                           : contact::Shape::Build(source, options);
     if (shape) {
-      shapes[i] = *shape;
+      (*shapes)[i] = *shape;
     } else {
       errors[i] = shape.error();
     }
   };
-  ForEachIndex(shapes.size(), cores, build, [&](std::size_t done) {
+  const std::size_t before = shapes->size() - ListWithoutShape(*shapes).size();
+  ForEachIndex(planned.size(), cores, build, [&](std::size_t done) {
     if (control.progress) {
-      control.progress(static_cast<double>(done) / static_cast<double>(shapes.size()));
+      control.progress(static_cast<double>(before + done) / static_cast<double>(shapes->size()));
     }
   });
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (shapes[i] == nullptr) {
-      Error error = errors[i];
-      error.where = fmt::format("{}, part '{}'", product.source, product.parts[i].name);
+  for (const product::PartId id : parts) {
+    if ((*shapes)[id.index()] == nullptr) {
+      Error error = errors[id.index()];
+      error.where = fmt::format("{}, part '{}'", product.source, product.parts[id.index()].name);
       return Unexpected(error);
     }
   }
+  return {};
+}
+
+Result<PartShapes> BuildShapes(const product::Product& product, const ShapesControl& control) {
+  PartShapes shapes(product.parts.size());
+  if (const auto added = AddShapes(product, ListWithoutShape(shapes), control, &shapes); !added) {
+    return Unexpected(added.error());
+  }
   return shapes;
+}
+
+std::vector<product::PartId> ListWithoutShape(const PartShapes& shapes) {
+  std::vector<product::PartId> missing;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i] == nullptr) {
+      missing.emplace_back(i);
+    }
+  }
+  return missing;
 }
 
 contact::ShapeMemory CalcShapeMemory(const Model& model) {

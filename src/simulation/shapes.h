@@ -21,10 +21,23 @@ struct ShapesControl {
   std::function<void(double fraction)> progress;  ///< Called on the calling thread; may be null.
 };
 
-/** The shape of each part of a product, by PartId: parts side by side, and blocks of a large part
- side by side. Errors: those of contact::Shape::Build, with the part; one fails all. */
-Result<std::vector<std::shared_ptr<const contact::Shape>>> BuildShapes(
-    const product::Product& product, const ShapesControl& control);
+/** Contact shapes of the parts of a product, by PartId. */
+using PartShapes = std::vector<std::shared_ptr<const contact::Shape>>;
+
+/** The shape of each part of a product: parts side by side, and blocks of a large part side by
+ side. Errors: those of contact::Shape::Build, with the part; one fails all. */
+[[nodiscard]] Result<PartShapes> BuildShapes(const product::Product& product,
+                                             const ShapesControl& control);
+
+/** Builds the shapes of some parts. Errors: as those of BuildShapes.
+ @param parts  Those whose shape is not there.
+ @param shapes  Of all parts, null where there is none. */
+[[nodiscard]] Result<void> AddShapes(const product::Product& product,
+                                     const std::vector<product::PartId>& parts,
+                                     const ShapesControl& control, PartShapes* shapes);
+
+/** The parts without a shape. */
+[[nodiscard]] std::vector<product::PartId> ListWithoutShape(const PartShapes& shapes);
 
 struct Model;
 

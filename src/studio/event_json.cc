@@ -59,6 +59,8 @@ const char* ToString(simulation::Placement placement) {
       return "placed";
     case simulation::Placement::kParked:
       return "parked";
+    case simulation::Placement::kPending:
+      return "pending";
   }
   return "loose";
 }

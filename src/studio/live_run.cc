@@ -52,9 +52,9 @@ bool IsHeld(const simulation::PartState& part) {
 LiveState MakeStart(const simulation::Model& model) {
   LiveState state;
   for (const simulation::Body& body : model.bodies) {
-    state.parts.push_back(body.role == simulation::BodyRole::kFixture
-                              ? simulation::PartState{Placement::kPlaced, body.X_WB_goal}
-                              : simulation::PartState{Placement::kLoose, body.X_WB_start});
+    const Placement placement = simulation::BeginningOf(body.role);
+    state.parts.push_back(
+        {placement, placement == Placement::kPlaced ? body.X_WB_goal : body.X_WB_start});
   }
   return state;
 }

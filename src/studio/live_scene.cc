@@ -12,7 +12,9 @@ using product::OccurrenceId;
 using simulation::Placement;
 
 Json MakeStepEvent(const OpenScene& scene, std::size_t step) {
-  return {{"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size()}};
+  const std::size_t pending = simulation::CountPending(*scene.model);
+  return {
+      {"event", "step"}, {"index", step}, {"total", scene.model->sequence.steps.size() + pending}};
 }
 
 Json MakePlacementEvent(std::size_t occurrence, const simulation::PartState& part) {
@@ -275,9 +277,18 @@ Result<void> LiveScene::CheckOpen() const {
   return {};
 }
 
+bool LiveScene::is_holding() const {
+  const std::lock_guard lock(mutex_);
+  return run_ != nullptr && IsHolding(*run_);
+}
+
 Result<void> LiveScene::CheckIdle() const {
   const std::lock_guard lock(mutex_);
   auto open = CheckOpen();
+  if (open && simulation::CountPending(*scene_->model) > 0) {
+    return Fail(ErrorCode::kInvalid, "the product is still being prepared", scene_->name,
+                "wait until all its parts are ready; meanwhile, take those that are");
+  }
   if (open && run_ != nullptr && IsHolding(*run_)) {
     return Fail(ErrorCode::kInvalid, "the hand holds a part", "", "release it first");
   }

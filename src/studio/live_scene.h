@@ -82,8 +82,11 @@ class LiveScene {
   /** Makes the event "step" of docs/protocol.md; null while nothing is open. */
   [[nodiscard]] Json DescribeStep() const;
 
-  /** Checks that nobody works on the scene. Errors: without a scene, while the simulated person
-   works, or while a hand holds a part. */
+  [[nodiscard]] bool is_holding() const;
+
+  /** Checks that nobody works on the scene, and that all its parts are ready. Errors: without a
+   scene, while parts are prepared, while the simulated person works, or while a hand holds a part.
+   */
   [[nodiscard]] Result<void> CheckIdle() const;
 
   /** Null while nothing is open, and between two runs. */

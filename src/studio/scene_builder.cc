@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "assembly/plan_order.h"
-#include "assembly/prepare_model.h"
 #include "base/digest.h"
 #include "cad/glb.h"
 #include "simulation/order_rules.h"
@@ -42,38 +41,52 @@ Diagnostics ReplacePlacement(const Diagnostics& before, const product::Product& 
   return now;
 }
 
+/** Makes the meshes that clients show. Errors: those of cad::MakeGlb. */
+Result<void> GiveMeshes(const product::Product& product, OpenScene* scene) {
+  auto glb = cad::MakeGlb(product, false);
+  if (!glb) {
+    return Unexpected(glb.error());
+  }
+  Digest digest;
+  digest.AddText(*glb);
+  scene->glb_hash = digest.Hex();
+  scene->glb = std::make_shared<const std::string>(std::move(*glb));
+  return {};
+}
+
 }  // namespace
 
 Result<SharedScene> SceneBuilder::Open(const std::filesystem::path& file, const std::string& name,
-                                       const cad::ProgressFn& progress,
-                                       const std::stop_token& stop) {
-  auto scene = std::make_shared<OpenScene>();
-  auto product = options_.load(file, progress, stop, &scene->diagnostics);
+                                       const cad::ProgressFn& progress, const std::stop_token& stop,
+                                       const SceneFn& on_first_parts) {
+  OpenScene scene;
+  auto product = options_.load(file, progress, stop, &scene.diagnostics);
   if (!product) {
     return Unexpected(product.error());
   }
-  scene->digest = CalcProductDigest(*product);
-  auto model = Compile(std::move(*product), name, progress, &scene->diagnostics);
+  std::error_code failed;
+  scene.file = std::filesystem::absolute(file, failed);
+  scene.name = name;
+  scene.digest = CalcProductDigest(*product);
+  if (auto given = GiveMeshes(*product, &scene); !given) {
+    return Unexpected(given.error());
+  }
+  assembly::PrepareOptions prepare = MakeOptions(name, progress);
+  prepare.stop = stop;
+  if (on_first_parts) {
+    prepare.least_gain = options_.least_gain;
+    prepare.on_first_parts = [&](const std::shared_ptr<const simulation::Model>& model) {
+      on_first_parts(MakeCopy(scene, model));
+    };
+  }
+  auto model = assembly::PrepareModel(std::move(*product), prepare, &scene.diagnostics);
   if (!model) {
     return Unexpected(model.error());
   }
   if (stop.stop_requested()) {
     return Fail(ErrorCode::kCancelled, "opening the file was cancelled", name, "");
   }
-  auto glb = cad::MakeGlb(*(*model)->product, false);
-  if (!glb) {
-    return Unexpected(glb.error());
-  }
-  Digest digest;
-  digest.AddText(*glb);
-  std::error_code failed;
-  scene->file = std::filesystem::absolute(file, failed);
-  scene->name = name;
-  scene->model = *model;
-  scene->glb_hash = digest.Hex();
-  scene->glb = std::make_shared<const std::string>(std::move(*glb));
-  scene->epoch = ++last_epoch_;
-  return scene;
+  return MakeCopy(scene, std::move(*model));
 }
 
 SharedScene SceneBuilder::MakeCopy(const OpenScene& before,
@@ -150,7 +163,8 @@ Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& ed
   }
   auto scene = std::make_shared<OpenScene>(before);
   scene->diagnostics = ReplacePlacement(before.diagnostics, product);
-  auto model = Compile(std::move(product), edit.what, progress, &scene->diagnostics);
+  auto model = assembly::PrepareModel(std::move(product), MakeOptions(edit.what, progress),
+                                      &scene->diagnostics);
   if (!model) {
     return Unexpected(model.error());
   }
@@ -163,15 +177,14 @@ Result<SharedScene> SceneBuilder::Change(const OpenScene& before, const Edit& ed
   return scene;
 }
 
-Result<std::shared_ptr<const simulation::Model>> SceneBuilder::Compile(
-    product::Product product, const std::string& name, const cad::ProgressFn& progress,
-    Diagnostics* diagnostics) const {
+assembly::PrepareOptions SceneBuilder::MakeOptions(const std::string& name,
+                                                   const cad::ProgressFn& progress) const {
   assembly::PrepareOptions prepare;
   prepare.seed = options_.seed;
   prepare.shape_cache = options_.shape_cache;
   prepare.progress = progress;
   prepare.name = name;
-  return assembly::PrepareModel(std::move(product), prepare, diagnostics);
+  return prepare;
 }
 
 }  // namespace hvas::studio

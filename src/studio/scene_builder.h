@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
 
+#include "assembly/prepare_model.h"
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "cad/import.h"
@@ -30,6 +32,8 @@ class SceneBuilder {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
     std::uint64_t seed{1};  ///< Any number: the actual sizes of the fits follow from it.
+    /** As of simulation::CompileOptions. */
+    std::chrono::duration<double> least_gain{simulation::CompileOptions().least_gain};
     /** New epochs are larger, so that they differ from those of the program's previous start. */
     std::uint32_t last_epoch{0};
   };
@@ -37,12 +41,18 @@ class SceneBuilder {
   explicit SceneBuilder(Options options)
       : options_(std::move(options)), last_epoch_(options_.last_epoch) {}
 
-  /** Opens a file. @param name  Display name of the file.
+  using SceneFn = std::function<void(const std::shared_ptr<const OpenScene>& scene)>;
+
+  /** Opens a file.
+   @param name  Display name of the file.
+   @param on_first_parts  Gets a scene in which only the first parts are ready, where the others
+   take long; may be null.
    Errors: those of the import; kUnsupported where no part has a mass; kCancelled. */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> Open(const std::filesystem::path& file,
                                                               const std::string& name,
                                                               const cad::ProgressFn& progress,
-                                                              const std::stop_token& stop);
+                                                              const std::stop_token& stop,
+                                                              const SceneFn& on_first_parts);
 
   /** Applies edits of OpenScene to a scene. Errors: those of the first edit that fails, and of an
    order that is not possible any more. */
@@ -69,9 +79,8 @@ class SceneBuilder {
       const std::vector<product::OccurrenceId>& occurrences, const std::stop_token& stop);
 
  private:
-  [[nodiscard]] Result<std::shared_ptr<const simulation::Model>> Compile(
-      product::Product product, const std::string& name, const cad::ProgressFn& progress,
-      Diagnostics* diagnostics) const;
+  [[nodiscard]] assembly::PrepareOptions MakeOptions(const std::string& name,
+                                                     const cad::ProgressFn& progress) const;
 
   Options options_;
   std::uint32_t last_epoch_;

@@ -226,6 +226,7 @@ Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
           {"mates", MatesOf(model)},
           {"steps", StepsOf(model)},
           {"left_out", LeftOutOf(model)},
+          {"pending", simulation::CountPending(model)},
           {"diagnostics", DiagnosticsOf(scene.diagnostics)}};
 }
 

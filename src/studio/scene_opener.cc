@@ -21,14 +21,33 @@ Json MakeResumedEvent(const SceneSnapshot& begun) {
           {"edits", begun.scene->edits.size()}};
 }
 
+/** The state of parts with the model in which all are ready: those that have not been touched lie
+ where it has them. */
+LiveState CarryOver(LiveState state, const simulation::Model& before,
+                    const simulation::Model& after) {
+  for (std::size_t i = 0; i < state.parts.size(); ++i) {
+    simulation::PartState& part = state.parts[i];
+    const simulation::Body& body = after.bodies[i];
+    const bool is_where_it_was =
+        part.X_WB.p() == before.bodies[i].X_WB_start.p() && !part.leader.is_valid();
+    const bool is_table_elsewhere = before.table_z != after.table_z;
+    if (part.placement == Placement::kPending ||
+        (part.placement == Placement::kLoose && (is_where_it_was || is_table_elsewhere))) {
+      part = {simulation::BeginningOf(body.role), body.X_WB_start};
+    }
+  }
+  state.next_step = 0;
+  return state;
+}
+
 }  // namespace
 
-void SceneOpener::Open(const std::filesystem::path& file, const std::string& name) {
-  Post([this, file, name] { DoOpen(file, name, nullptr); });
+void SceneOpener::Open(const std::filesystem::path& file, const std::string& name, When when) {
+  Post([this, file, name, when] { DoOpen(file, name, when, nullptr); });
 }
 
 void SceneOpener::Resume(const SavedWork& work) {
-  Post([this, work] { DoOpen(work.file, work.name, &work); });
+  Post([this, work] { DoOpen(work.file, work.name, When::kWhole, &work); });
 }
 
 void SceneOpener::Post(std::function<void()> job) {
@@ -45,22 +64,43 @@ void SceneOpener::Cancel() {
   opening_.request_stop();
 }
 
-void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& name,
+void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& name, When when,
                          const SavedWork* kept) {
   std::stop_token stop;
   {
     const std::lock_guard lock(mutex_);
     stop = opening_.get_token();
+    whole_ = nullptr;
   }
-  const auto scene =
-      parts_.builder->Open(file, name, MakeProgressListener(parts_.events, name), stop);
+  const SceneSnapshot before = parts_.live->MakeRestingSnapshot();
+  SceneBuilder::SceneFn on_first_parts;
+  if (when == When::kFirstParts) {
+    on_first_parts = [this](const auto& first) { ShowFirst(first); };
+  }
+  const auto scene = parts_.builder->Open(file, name, MakeProgressListener(parts_.events, name),
+                                          stop, on_first_parts);
+  const auto shown = parts_.live->scene();
+  const bool has_begun = shown != before.scene;
   if (!scene) {
+    if (has_begun && before.scene != nullptr) {
+      parts_.live->Show(before.scene, before.state, false, name + " was not opened");
+    }
     const Json failed{{"event", "failed"}, {"file", name}, {"error", ToJson(scene.error())}};
     {
       const std::lock_guard lock(mutex_);
       failure_ = failed;
     }
     parts_.events->Publish(failed);
+    return;
+  }
+  if (has_begun) {
+    {
+      const std::lock_guard lock(mutex_);
+      whole_ = *scene;
+      failure_ = nullptr;
+      resumed_ = nullptr;
+    }
+    ShowWhole();
     return;
   }
   parts_.edits->ClearHistory();
@@ -83,6 +123,32 @@ void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& n
   }
 }
 
+void SceneOpener::ShowFirst(const std::shared_ptr<const OpenScene>& scene) {
+  parts_.edits->ClearHistory();
+  parts_.live->Show(scene, {}, false);
+  parts_.paths->Clear();  // paths of the previous product, whose last frame has come
+  parts_.edits->PublishHistory();
+}
+
+void SceneOpener::ShowWhole() {
+  if (parts_.live->is_holding()) {
+    return;
+  }
+  std::shared_ptr<const OpenScene> whole;
+  {
+    const std::lock_guard lock(mutex_);
+    whole = std::exchange(whole_, nullptr);
+  }
+  if (whole == nullptr) {
+    return;
+  }
+  const SceneSnapshot before = parts_.live->MakeRestingSnapshot();
+  parts_.edits->ClearHistory();
+  parts_.live->Show(whole, CarryOver(before.state, *before.scene->model, *whole->model), false,
+                    "all parts are ready");
+  parts_.edits->PublishHistory();
+}
+
 SceneSnapshot SceneOpener::RestoreWork(const SavedWork& kept,
                                        const std::shared_ptr<const OpenScene>& opened) {
   if (opened->digest != kept.digest || opened->model->bodies.size() != kept.state.parts.size()) {
@@ -102,10 +168,13 @@ SceneSnapshot SceneOpener::RestoreWork(const SavedWork& kept,
   return begun;
 }
 
-void SceneOpener::OnHold(const simulation::SimulationEvent& /*event*/,
+void SceneOpener::OnHold(const simulation::SimulationEvent& event,
                          const std::optional<SceneSnapshot>& /*before*/) {
   const std::lock_guard lock(mutex_);
   resumed_ = nullptr;
+  if (whole_ != nullptr && event.kind == simulation::SimulationEvent::Kind::kDropped) {
+    parts_.worker->Post([this](const std::stop_token& /*stop*/) { ShowWhole(); });
+  }
 }
 
 std::vector<Json> SceneOpener::MakeCatchUpEvents() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -39,9 +40,16 @@ class SceneOpener final : public SceneObserver {
 
   explicit SceneOpener(const Parts& parts) : parts_(parts) {}
 
+  /** When an opened product is shown. */
+  enum class When : std::uint8_t {
+    kFirstParts,  ///< When its first parts are ready, and again when all are.
+    kWhole,       ///< When all its parts are ready.
+  };
+
   /** Opens a file; a file that is being opened is given up. Reports by the events "progress", and
    "scene" or "failed". @param name  Display name. */
-  void Open(const std::filesystem::path& file, const std::string& name);
+  void Open(const std::filesystem::path& file, const std::string& name,
+            When when = When::kFirstParts);
 
   /** Opens the product of saved work, applies its edits and restores its state; where the file
    holds another product by now, it is opened as new. Reports by the event "resumed" as well. */
@@ -60,7 +68,12 @@ class SceneOpener final : public SceneObserver {
   /** Posts a job that takes the place of the one in progress. */
   void Post(std::function<void()> job);
   /** @param kept  Saved work to resume; null: none. */
-  void DoOpen(const std::filesystem::path& file, const std::string& name, const SavedWork* kept);
+  void DoOpen(const std::filesystem::path& file, const std::string& name, When when,
+              const SavedWork* kept);
+  /** Shows a scene in which only the first parts are ready. */
+  void ShowFirst(const std::shared_ptr<const OpenScene>& scene);
+  /** Shows the scene that waits for it, unless a hand holds a part: then when it lets go. */
+  void ShowWhole();
   /** Restores saved work on a scene that has been opened; where it does not fit, the scene as
    opened. */
   [[nodiscard]] SceneSnapshot RestoreWork(const SavedWork& kept,
@@ -70,6 +83,8 @@ class SceneOpener final : public SceneObserver {
 
   mutable std::mutex mutex_;  ///< Protects what follows.
   std::stop_source opening_;
+  /** Scene that takes the place of the one of its first parts; null: none. */
+  std::shared_ptr<const OpenScene> whole_;
   Json failure_;  ///< Event of the last file that could not be opened; null: none.
   Json resumed_;  ///< Event "resumed", until the next change; null: none.
 };

@@ -86,7 +86,7 @@ Result<std::unique_ptr<StudyDesk>> StudyDesk::Open(study::StudyFolder folder, Wo
 }
 
 void StudyDesk::Start() {
-  bench_->opener().Open(options_.product, folder_.protocol().title.en);
+  bench_->opener().Open(options_.product, folder_.protocol().title.en, SceneOpener::When::kWhole);
 }
 
 Result<void> StudyDesk::RecordEvent(StudyEvent event) {

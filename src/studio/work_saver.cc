@@ -34,7 +34,8 @@ void WorkSaver::ScheduleSave() {
 
 void WorkSaver::Save() {
   const SceneSnapshot now = live_->MakeRestingSnapshot();
-  if (file_.empty() || now.scene == nullptr || trials_->trial() != nullptr) {
+  if (file_.empty() || now.scene == nullptr || trials_->trial() != nullptr ||
+      simulation::CountPending(*now.scene->model) > 0) {
     return;
   }
   const auto saved = SaveWork(file_, MakeSavedWork(now));

@@ -23,9 +23,14 @@ std::optional<Error> ExplainUnavailable(Placement placement, const std::string& 
       return Error{ErrorCode::kInvalid, "the part is fixed", name, "bring the other parts to it"};
     case Placement::kHeld:
       return Error{ErrorCode::kInvalid, "another hand holds the part", name, "release it first"};
-    default:
+    case Placement::kPending:
+      return Error{ErrorCode::kInvalid, "the part is still being prepared", name,
+                   "take another part meanwhile"};
+    case Placement::kLoose:
+    case Placement::kParked:
       return std::nullopt;
   }
+  return std::nullopt;
 }
 
 Json ListIds(const std::vector<OccurrenceId>& ids) {

@@ -116,6 +116,7 @@ export function makeScene(hvas, file, epoch) {
     radius_m: radius,
     seed: String(run.seed),
     next_step: 1,
+    pending: 0,
     subassemblies: product.subassemblies,
     occurrences,
     mates: product.mates.map((m) => makeMate(m, occurrences, product.features)),

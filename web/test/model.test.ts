@@ -19,6 +19,7 @@ const scene: Scene = {
   radius_m: 0.1,
   seed: "1",
   next_step: 1,
+  pending: 0,
   subassemblies: [
     { id: 0, parent: null, name: "pump", subassemblies: [1], occurrences: [0, 1] },
     { id: 1, parent: 0, name: "fasteners", subassemblies: [], occurrences: [2, 3, 4] },

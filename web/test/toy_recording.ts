@@ -115,6 +115,7 @@ export const toyScene: Scene = {
   radius_m: 0.1,
   seed: "1",
   next_step: 1,
+  pending: 0,
   subassemblies: [{ id: 0, parent: null, name: "toy", subassemblies: [], occurrences: [0, 1, 2] }],
   occurrences: [0, 1, 2].map((id) =>
     makePart(id, `part ${id}`, id, {

@@ -119,6 +119,17 @@ Product PegInBlock(const Pose& X_WP) {
   return product;
 }
 
+Product PegInBlockInCollar() {
+  constexpr double kFine = 0.1e-6;  // [m] of chords from circles.
+  Product product = PegInBlock();
+  const PartId collar =
+      AddPart(&product, "collar", contact::testing::Bushing(16e-3, 20e-3, 5e-3, kFine));
+  Place(&product, collar, "collar");
+  product.mates.clear();
+  Complete(&product);
+  return product;
+}
+
 Product CoinUnderLid() {
   Product product;
   product.name = "box";

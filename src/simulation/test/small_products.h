@@ -34,6 +34,10 @@ inline constexpr double kPegLength = 30e-3;
  30 mm long on the floor of the bore. */
 Product PegInBlock(const Pose& X_WP = Pose());
 
+/** The peg in its block, and a finely meshed collar around the block that nothing joins to it: its
+ contact shape takes longer than those of the two. */
+Product PegInBlockInCollar();
+
 /** A cup, a coin that lies loose on its floor, and a lid that lies on the rim. */
 Product CoinUnderLid();
 

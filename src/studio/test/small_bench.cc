@@ -65,6 +65,9 @@ WorkbenchOptions SmallBench() {
     if (stop.stop_requested()) {
       return Fail(ErrorCode::kCancelled, "stopped", file.string(), "");
     }
+    if (file.filename() == "collar.step") {
+      return simulation::testing::PegInBlockInCollar();
+    }
     return file.filename() == "cap.step" ? simulation::testing::CappedCollarUnderClamp()
                                          : simulation::testing::PegInBlock();
   };

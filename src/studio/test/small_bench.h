@@ -31,9 +31,9 @@ class EventLog {
 };
 
 /** Makes the options of a workbench on which every file is simulation::testing::PegInBlock:
- occurrence 0 is the block, 1 the peg; but "cap.step" is CappedCollarUnderClamp, and a file named
- "missing" cannot be opened. Contact shapes are
- made once in a program; its recordings are deleted at its end. */
+ occurrence 0 is the block, 1 the peg; but "cap.step" is CappedCollarUnderClamp, "collar.step"
+ PegInBlockInCollar, and a file named "missing" cannot be opened. Contact shapes are made once in a
+ program; its recordings are deleted at its end. */
 [[nodiscard]] WorkbenchOptions SmallBench();
 
 /** Such a workbench with its events, which keeps its work in a file; empty: it keeps none. */

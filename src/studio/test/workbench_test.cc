@@ -3,8 +3,12 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <future>
+#include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +46,94 @@ TEST_F(SceneOpenerTest, WhatCannotBeOpenedLeavesWhatIsOpen) {
   EXPECT_EQ((*failed)["error"]["code"], "not-found");
   EXPECT_EQ((*failed)["error"]["remedy"], "name another");
   EXPECT_EQ(bench_.live().scene(), before);
+}
+
+/** A workbench that shows first parts however soon the others are ready. */
+class FirstPartsTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kCollar = 2;
+
+  FirstPartsTest()
+      : bench_([] {
+          WorkbenchOptions options = testing::SmallBench();
+          options.scenes.shape_cache = nullptr;
+          options.scenes.least_gain = {};
+          return options;
+        }()) {
+    bench_.on_event = [this](Json event) {
+      const bool is_first = event["event"] == "scene" && event["why"].is_null();
+      log_.Add(std::move(event));
+      if (is_first && on_first_) {
+        on_first_();
+      }
+    };
+  }
+
+  ~FirstPartsTest() override { bench_.Stop(); }
+
+  std::optional<Json> AwaitWhole(double seconds) {
+    return log_.Await(
+        [](const Json& event) {
+          return event["event"] == "scene" && event["why"] == "all parts are ready";
+        },
+        0, seconds);
+  }
+
+  EventLog log_;
+  Workbench bench_;
+  std::function<void()> on_first_;  ///< Called while the other parts are prepared.
+};
+
+TEST_F(FirstPartsTest, OnlyWhatIsReadyCanBeTakenUntilAllIs) {
+  std::vector<Result<TakenParts>> taken;
+  std::vector<Result<void>> idle;
+  on_first_ = [&] {
+    idle.push_back(bench_.live().CheckIdle());
+    taken.push_back(bench_.hands().Take(0, product::OccurrenceId(kCollar)));
+  };
+  bench_.opener().Open("collar.step", "collar");
+  ASSERT_TRUE(AwaitWhole(60));
+  ASSERT_EQ(taken.size(), 1u);
+  ASSERT_FALSE(taken[0]);
+  EXPECT_EQ(taken[0].error().message, "the part is still being prepared");
+  ASSERT_FALSE(idle[0]);
+  EXPECT_EQ(idle[0].error().message, "the product is still being prepared");
+  EXPECT_EQ(bench_.live().state().parts[kCollar].placement, Placement::kLoose);
+  EXPECT_TRUE(bench_.live().CheckIdle());
+  EXPECT_TRUE(bench_.hands().Take(0, product::OccurrenceId(kCollar)));
+}
+
+TEST_F(FirstPartsTest, APartInTheHandIsNotTakenAway) {
+  on_first_ = [&] { ASSERT_TRUE(bench_.hands().Take(0, product::OccurrenceId(kPeg))); };
+  bench_.opener().Open("collar.step", "collar");
+  ASSERT_TRUE(log_.Await("taken"));
+  const auto is_ready = [](const Json& event) {
+    return event["event"] == "progress" && event["stage"] == "ready";
+  };
+  ASSERT_TRUE(log_.Await(is_ready));
+  EXPECT_FALSE(AwaitWhole(0.3));
+  EXPECT_TRUE(bench_.live().is_holding());
+  ASSERT_TRUE(bench_.hands().Release(0));
+  ASSERT_TRUE(AwaitWhole(60));
+  EXPECT_EQ(bench_.live().state().parts[kPeg].placement, Placement::kLoose);
+}
+
+TEST_F(FirstPartsTest, WhatWasOpenComesBackWhereThePreparationIsCancelled) {
+  bench_.opener().Open("peg.step", "peg");
+  ASSERT_TRUE(log_.Await("scene"));
+  const auto before = bench_.live().scene();
+  on_first_ = [&] { bench_.opener().Cancel(); };
+  bench_.opener().Open("collar.step", "collar");
+  const auto failed = log_.Await("failed");
+  ASSERT_TRUE(failed);
+  EXPECT_EQ((*failed)["error"]["code"], "cancelled");
+  EXPECT_EQ(bench_.live().scene(), before);
+}
+
+TEST_F(FirstPartsTest, AStudyShowsTheWholeProduct) {
+  bench_.opener().Open("collar.step", "collar", SceneOpener::When::kWhole);
+  ASSERT_TRUE(log_.Await("scene"));
+  EXPECT_EQ(simulation::CountPending(*bench_.live().scene()->model), 0u);
 }
 
 class LiveSceneTest : public testing::WorkbenchFixture {};

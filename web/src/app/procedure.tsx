@@ -10,7 +10,7 @@ import { canSteer, store, view } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
 import { OrderPanel } from "./order_panel";
-import { isInPlace, nameOfStep, stepText } from "./progress";
+import { endText, isInPlace, nameOfStep, stepText } from "./progress";
 
 /** Backwards while the product is taken apart. */
 function shownSteps(): { steps: readonly Step[]; at: number | null; isApart: boolean } {
@@ -32,6 +32,7 @@ export function Procedure() {
       list.current.scrollTop = now.offsetTop - list.current.offsetTop - 52;
     }
   }, [at, steps.length]);
+  const isPending = !isApart && (store.scene.value?.pending ?? 0) > 0;
   if (steps.length === 0) {
     return null;
   }
@@ -63,7 +64,7 @@ export function Procedure() {
           );
         })}
       </ol>
-      {isApart || movableSteps(steps).length < 2 ? null : (
+      {isApart || isPending || movableSteps(steps).length < 2 ? null : (
         <p class="card-buttons">
           <button
             type="button"
@@ -76,7 +77,7 @@ export function Procedure() {
           </button>
         </p>
       )}
-      {at !== null && at >= steps.length ? <p class="quiet">{t(isApart ? "apart.done" : "steps.doneAll")}</p> : null}
+      {isPending || (at !== null && at >= steps.length) ? <p class="quiet">{isApart ? t("apart.done") : endText()}</p> : null}
     </section>
   );
 }

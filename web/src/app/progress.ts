@@ -2,7 +2,7 @@
 
 import type { Step } from "../protocol/messages";
 import { store } from "./app_state";
-import { t } from "./i18n";
+import { t, tn } from "./i18n";
 
 /** A part that nothing more has to be done with. */
 export function isInPlace(id: number): boolean {
@@ -23,10 +23,19 @@ export function stepText(step: Step): string {
   return t(`steps.${step.kind}`, { name });
 }
 
+/** What is told behind the last step that is known. */
+export function endText(): string {
+  const pending = store.scene.value?.pending ?? 0;
+  return pending > 0 ? tn("steps.pending", pending) : t("steps.doneAll");
+}
+
 /** The step at hand, with its number. */
 export function stepTitle(): string {
   const at = store.step.value?.index ?? 0;
   const step = store.scene.value?.steps[at];
   const total = store.scene.value?.steps.length ?? 0;
-  return step === undefined ? t("steps.doneAll") : `${at + 1}/${total} · ${stepText(step)}`;
+  if (step === undefined) {
+    return endText();
+  }
+  return `${at + 1}/${total} · ${stepText(step)}`;
 }

@@ -154,11 +154,12 @@ export class Studio {
       const { live } = this.store;
       live.placements.value = new Map(scene.occurrences.map((o) => [o.id, o.placement]));
       live.leaders.value = leadersOf(scene);
-      live.step.value = { index: scene.next_step, total: scene.steps.length };
+      live.step.value = { index: scene.next_step, total: scene.steps.length + scene.pending };
       live.scene.value = scene;
       this.toldSince.filter(isOfPlaces).forEach((event) => this.applyAssembly(event));
-      this.store.loading.value = null;
-      this.store.failure.value = null;
+      if (scene.pending === 0) {
+        this.store.loading.value = null;
+      }
     });
   }
 
@@ -213,6 +214,7 @@ export class Studio {
         }
         break;
       case "scene":
+        store.failure.value = null;
         void this.fetchScene();
         break;
       case "forces":
