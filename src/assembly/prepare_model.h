@@ -29,7 +29,7 @@ struct PrepareOptions {
   std::vector<simulation::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
-  /** As of simulation::CompileOptions; may be null. */
+  /** Called as simulation::CompileOptions has it; may be null. */
   std::function<void(const std::shared_ptr<const simulation::Model>& model)> on_first_parts;
   std::chrono::duration<double> least_gain{simulation::CompileOptions().least_gain};
   std::stop_token stop;  ///< Ends the preparation.

@@ -32,7 +32,7 @@ class SceneBuilder {
     LoadFn load;
     std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
     std::uint64_t seed{1};  ///< Any number: the actual sizes of the fits follow from it.
-    /** As of simulation::CompileOptions. */
+    /** The least gain for which first parts are shown, as simulation::CompileOptions has it. */
     std::chrono::duration<double> least_gain{simulation::CompileOptions().least_gain};
     /** New epochs are larger, so that they differ from those of the program's previous start. */
     std::uint32_t last_epoch{0};
