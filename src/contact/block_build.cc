@@ -89,6 +89,7 @@ BlockBuilder::BlockBuilder(const Shape::Data& data, const NearSearch& search)
     : data_(data),
       search_(search),
       h_(data.voxel),
+      quantum_(kBandVoxels * data.voxel / 32767),
       exact_depth_(CalcExactDepth(data.voxel)),
       block_reach_(CalcBlockReach(data.voxel)),
       face_margin_(std::max(kFaceMarginVoxels * data.voxel, kLeastFaceMargin)) {
@@ -184,8 +185,10 @@ std::uint32_t BlockBuilder::FindOnlyFace() const {
 }
 
 std::int16_t BlockBuilder::ToUnits(double phi) const {
-  const double quantum = kBandVoxels * h_ / 32767;
-  return static_cast<std::int16_t>(std::lrint(std::clamp(phi / quantum, -32767.0, 32767.0)));
+  // Adding this leaves no digit below one: rounded as a double is, to even. std::lrint is a call.
+  constexpr double kRounder = 0x1.8p52;
+  const double units = std::clamp(phi / quantum_, -32767.0, 32767.0);
+  return static_cast<std::int16_t>((units + kRounder) - kRounder);
 }
 
 void BlockBuilder::BuildOctant(const Index3& low, NearSet* octant) {
@@ -316,11 +319,20 @@ void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
   points_.clear();
   std::array<double, kMostFaces> least{};
   least.fill(std::numeric_limits<double>::infinity());
-  for (NearTriangle& entry : *list) {
-    points_.push_back(search_.ClosestOn(entry.triangle, centre));
-    entry.distance = (points_.back().q - centre).norm();
-    double& face_least = least[few.IndexOf(data_.mesh.face[entry.triangle])];
-    face_least = std::min(face_least, entry.distance);
+  NearSearch::EightTriangles eight(search_, centre);
+  for (std::size_t i = 0; i < list->size(); i += NearSearch::EightTriangles::kMost) {
+    eight.Clear();
+    for (std::size_t k = i; k < std::min(i + eight.kMost, list->size()); ++k) {
+      eight.Add((*list)[k].triangle);
+    }
+    eight.Calc();
+    for (int k = 0; k < eight.count(); ++k) {
+      NearTriangle& entry = (*list)[i + static_cast<std::size_t>(k)];
+      points_.push_back(eight.PointOf(k));
+      entry.distance = std::sqrt(eight.squared(k));
+      double& face_least = least[few.IndexOf(data_.mesh.face[entry.triangle])];
+      face_least = std::min(face_least, entry.distance);
+    }
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -445,11 +457,14 @@ bool BlockBuilder::IsSmooth(const NearList& list) const {
 // All nodes are beyond the band, on one side of the surface.
 void BlockBuilder::FillFarZone(const Index3& zone, double distance) {
   ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
+  SetNode(2 * zone[0], 2 * zone[1], 2 * zone[2], distance);
+  const auto row_at = [&](int j, int k) {
+    return block_->nodes.begin() + (k * 81 + j * 9 + 2 * zone[0]);
+  };
+  const std::int16_t units = *row_at(2 * zone[1], 2 * zone[2]);
   for (int k = 2 * zone[2]; k <= 2 * zone[2] + 2; ++k) {
     for (int j = 2 * zone[1]; j <= 2 * zone[1] + 2; ++j) {
-      for (int i = 2 * zone[0]; i <= 2 * zone[0] + 2; ++i) {
-        SetNode(i, j, k, distance);
-      }
+      std::fill_n(row_at(j, k), 3, units);
     }
   }
 }

@@ -87,6 +87,7 @@ class BlockBuilder {
   const Shape::Data& data_;
   const NearSearch& search_;
   double h_;
+  double quantum_;  // Of the nodes [m].
   double exact_depth_;
   double block_reach_;
   double face_margin_;

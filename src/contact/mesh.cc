@@ -195,26 +195,40 @@ void ClassifyVertices(Mesh* mesh) {
 
 TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                     const Vec3& c) noexcept {
-  return CalcClosestOnTriangle(p, MakeTriangleSides(a, b, c), [&](std::size_t k) -> const Vec3& {
-    return k == 0 ? a : k == 1 ? b : c;
-  });
+  return CalcClosestOnTriangle(p, MakeTriangleCorners(a, b, c));
 }
 
-TriangleSides MakeTriangleSides(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-  TriangleSides t;
-  t.a_x = a.x();
-  t.a_y = a.y();
-  t.a_z = a.z();
-  t.ab_x = b.x() - a.x();
-  t.ab_y = b.y() - a.y();
-  t.ab_z = b.z() - a.z();
-  t.ac_x = c.x() - a.x();
-  t.ac_y = c.y() - a.y();
-  t.ac_z = c.z() - a.z();
-  t.ab_ab = t.ab_x * t.ab_x + t.ab_y * t.ab_y + t.ab_z * t.ab_z;
-  t.ab_ac = t.ab_x * t.ac_x + t.ab_y * t.ac_y + t.ab_z * t.ac_z;
-  t.ac_ac = t.ac_x * t.ac_x + t.ac_y * t.ac_y + t.ac_z * t.ac_z;
-  return t;
+TriangleCorners MakeTriangleCorners(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const double ab[3]{b.x() - a.x(), b.y() - a.y(), b.z() - a.z()};
+  const double ac[3]{c.x() - a.x(), c.y() - a.y(), c.z() - a.z()};
+  return {{a.x(), a.y(), a.z()},
+          {b.x(), b.y(), b.z()},
+          {c.x(), c.y(), c.z()},
+          ab[0] * ab[0] + ab[1] * ab[1] + ab[2] * ab[2],
+          ab[0] * ac[0] + ab[1] * ac[1] + ab[2] * ac[2],
+          ac[0] * ac[0] + ac[1] * ac[1] + ac[2] * ac[2]};
+}
+
+void CalcEightClosestScalar(const TriangleCorners* triangles, const std::uint32_t numbers[8],
+                            int count, const EightPoints& p, EightClosest* out) noexcept {
+  for (int i = 0; i < count; ++i) {
+    const Vec3 point(p.at[0][i], p.at[1][i], p.at[2][i]);
+    const TrianglePoint closest = CalcClosestOnTriangle(point, triangles[numbers[i]]);
+    for (int k = 0; k < 3; ++k) {
+      out->q.at[k][i] = closest.q[k];
+    }
+    out->squared[i] = (closest.q - point).squaredNorm();
+    out->features[i] = static_cast<std::int32_t>(closest.feature);
+  }
+}
+
+CalcEightClosest ChooseEightClosest() noexcept {
+#ifdef HVAS_HAS_AVX2_KERNEL
+  if (__builtin_cpu_supports("avx2")) {
+    return &CalcEightClosestAvx2;
+  }
+#endif
+  return &CalcEightClosestScalar;
 }
 
 Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/closest_kernel.h"
 #include "contact/shape.h"
 
 namespace hvas::contact {
@@ -31,41 +32,39 @@ struct TrianglePoint {
 [[nodiscard]] TrianglePoint CalcClosestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
                                                   const Vec3& c) noexcept;
 
-/** A corner of a triangle, its sides from there and their dot products: what its closest point to
- any point follows from. */
-struct TriangleSides {
-  double a_x, a_y, a_z;
-  double ab_x, ab_y, ab_z;
-  double ac_x, ac_y, ac_z;
-  double ab_ab, ab_ac, ac_ac;
-};
+[[nodiscard]] TriangleCorners MakeTriangleCorners(const Vec3& a, const Vec3& b,
+                                                  const Vec3& c) noexcept;
 
-[[nodiscard]] TriangleSides MakeTriangleSides(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
-
-/** Finds that point where the sides are known. RT-safe.
- @param corner_of  Gives the corner of a number: 0, 1 or 2. */
-template <typename CornerOf>
-[[nodiscard]] inline TrianglePoint CalcClosestOnTriangle(const Vec3& p, const TriangleSides& t,
-                                                         const CornerOf& corner_of) noexcept {
-  // In plain numbers, as most of the time of building a shape is spent here. Everything follows
-  // from the dot products of the sides ab, ac with ap, bp, cp.
-  const double ap_x = p.x() - t.a_x;
-  const double ap_y = p.y() - t.a_y;
-  const double ap_z = p.z() - t.a_z;
-  const double d1 = t.ab_x * ap_x + t.ab_y * ap_y + t.ab_z * ap_z;
-  const double d2 = t.ac_x * ap_x + t.ac_y * ap_y + t.ac_z * ap_z;
+/** Finds that point where the dot products are known. RT-safe. */
+[[nodiscard]] inline TrianglePoint CalcClosestOnTriangle(const Vec3& p,
+                                                         const TriangleCorners& t) noexcept {
+  // In plain numbers. Everything follows from the dot products of the sides ab, ac with ap, bp, cp.
+  const double ab_x = t.b[0] - t.a[0];
+  const double ab_y = t.b[1] - t.a[1];
+  const double ab_z = t.b[2] - t.a[2];
+  const double ac_x = t.c[0] - t.a[0];
+  const double ac_y = t.c[1] - t.a[1];
+  const double ac_z = t.c[2] - t.a[2];
+  const double ap_x = p.x() - t.a[0];
+  const double ap_y = p.y() - t.a[1];
+  const double ap_z = p.z() - t.a[2];
+  const double d1 = ab_x * ap_x + ab_y * ap_y + ab_z * ap_z;
+  const double d2 = ac_x * ap_x + ac_y * ap_y + ac_z * ap_z;
   const auto at = [&](double u, double v, TriangleFeature feature) {
-    return TrianglePoint{Vec3(t.a_x + u * t.ab_x + v * t.ac_x, t.a_y + u * t.ab_y + v * t.ac_y,
-                              t.a_z + u * t.ab_z + v * t.ac_z),
+    return TrianglePoint{Vec3(t.a[0] + u * ab_x + v * ac_x, t.a[1] + u * ab_y + v * ac_y,
+                              t.a[2] + u * ab_z + v * ac_z),
                          feature};
   };
+  const auto at_corner = [](const double corner[3], TriangleFeature feature) {
+    return TrianglePoint{Vec3(corner[0], corner[1], corner[2]), feature};
+  };
   if (d1 <= 0 && d2 <= 0) {
-    return {corner_of(0), TriangleFeature::kCorner0};
+    return at_corner(t.a, TriangleFeature::kCorner0);
   }
   const double d3 = d1 - t.ab_ab;
   const double d4 = d2 - t.ab_ac;
   if (d3 >= 0 && d4 <= d3) {
-    return {corner_of(1), TriangleFeature::kCorner1};
+    return at_corner(t.b, TriangleFeature::kCorner1);
   }
   const double vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) {
@@ -74,7 +73,7 @@ template <typename CornerOf>
   const double d5 = d1 - t.ab_ac;
   const double d6 = d2 - t.ac_ac;
   if (d6 >= 0 && d5 <= d6) {
-    return {corner_of(2), TriangleFeature::kCorner2};
+    return at_corner(t.c, TriangleFeature::kCorner2);
   }
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) {
@@ -87,7 +86,7 @@ template <typename CornerOf>
   }
   const double sum = va + vb + vc;
   if (!(sum > 0)) {
-    return {corner_of(0), TriangleFeature::kCorner0};  // No area.
+    return at_corner(t.a, TriangleFeature::kCorner0);  // No area.
   }
   return at(vb / sum, vc / sum, TriangleFeature::kInside);
 }

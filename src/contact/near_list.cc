@@ -27,7 +27,7 @@ Vec3 CentreOfOctant(const Vec3& low, const Vec3& high, std::size_t k) {
 
 NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
   boxes_.reserve(mesh.triangles.size());
-  sides_.reserve(mesh.triangles.size());
+  corners_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     spatial::Box box;
     for (const std::uint32_t v : t) {
@@ -35,8 +35,8 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
     }
     const Vec3 c = box.centre();
     const Vec3 half = 0.5 * box.size();
-    sides_.push_back(
-        MakeTriangleSides(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+    corners_.push_back(
+        MakeTriangleCorners(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
     boxes_.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
   }
   FindRimBends();
@@ -274,6 +274,18 @@ void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, Nea
   double limit = CalcLimit(least, radius);
   NearList& list = out->list;
   list.resize(begun.list.size());
+  EightTriangles eight(*this, c);
+  std::array<std::size_t, EightTriangles::kMost> place{};
+  const auto calc = [&] {
+    eight.Calc();
+    for (int i = 0; i < eight.count(); ++i) {
+      const double distance = std::sqrt(eight.squared(i));
+      list[place[static_cast<std::size_t>(i)]].distance = -distance;  // Not squared.
+      least = std::min(least, distance);
+    }
+    limit = CalcLimit(least, radius);
+    eight.Clear();
+  };
   std::size_t kept = 0;
   for (const BoxedTriangle& entry : begun.list) {
     if (entry.squared > limit * limit) {
@@ -281,18 +293,14 @@ void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, Nea
     }
     list[kept] = {entry.triangle, entry.squared};
     if (static_cast<double>(entry.radius) > small && boxes_[entry.triangle].radius > 0.5 * radius) {
-      const double distance = CalcDistance(entry.triangle, c);
-      if (distance > limit) {
-        continue;
+      place[static_cast<std::size_t>(eight.count())] = kept;
+      if (eight.Add(entry.triangle)) {
+        calc();
       }
-      if (distance < least) {
-        least = distance;
-        limit = CalcLimit(least, radius);
-      }
-      list[kept].distance = -distance;  // Not squared.
     }
     ++kept;
   }
+  calc();
   list.resize(kept);
   // The limit has sunk on the way.
   out->least = {kNoFace, kAnywhere};
@@ -328,6 +336,17 @@ NearTriangle NearSearch::FindLeast(const Vec3& c, double radius, const BegunFilt
   return least;
 }
 
+NearSearch::TriangleBox NearSearch::BoxAround(const NodeGrid& grid) {
+  TriangleBox box{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = grid.at[axis][0];
+    const double high = grid.at[axis][grid.count[axis] - 1];
+    box.centre[axis] = 0.5 * (low + high);
+    box.half[axis] = 0.5 * (high - low) + kRounding;
+  }
+  return box;
+}
+
 // As for octants, but each node has a list of its own at once: what is no further away than
 // `first`.
 void NearSearch::FilterNodes(const BoxedList& list, std::uint32_t first, const NodeGrid& grid,
@@ -335,21 +354,38 @@ void NearSearch::FilterNodes(const BoxedList& list, std::uint32_t first, const N
   std::array<double, NodeGrid::kMost + 1> limit_squared{};
   std::array<BoxedTriangle*, NodeGrid::kMost + 1> end{};
   std::size_t n = 0;
+  EightTriangles eight(*this);
+  const auto limit_nodes = [&] {
+    eight.Calc();
+    for (int i = 0; i < eight.count(); ++i, ++n) {
+      const double limit = CalcLimit(std::sqrt(eight.squared(i)), 0);
+      limit_squared[n] = limit * limit;
+      (*out)[n].resize(list.size() + 1);  // One more than may be kept is written.
+      end[n] = (*out)[n].data();
+    }
+    eight.Clear();
+  };
   for (std::size_t k = 0; k < grid.count[2]; ++k) {
     for (std::size_t j = 0; j < grid.count[1]; ++j) {
-      for (std::size_t i = 0; i < grid.count[0]; ++i, ++n) {
-        const double limit = CalcLimit(CalcDistance(first, grid.NodeAt(i, j, k)), 0);
-        limit_squared[n] = limit * limit;
-        (*out)[n].resize(list.size() + 1);  // One more than may be kept is written.
-        end[n] = (*out)[n].data();
+      for (std::size_t i = 0; i < grid.count[0]; ++i) {
+        if (eight.Add(first, grid.NodeAt(i, j, k))) {
+          limit_nodes();
+        }
       }
     }
   }
+  limit_nodes();
+  // Most boxes are further from the box around the nodes than any node may be from its closest.
+  const double most = *std::max_element(limit_squared.data(), limit_squared.data() + n) * kSlack;
+  const TriangleBox around = BoxAround(grid);
   const Pair x(grid.at[0][0], grid.at[0][1]);
   const Pair y(grid.at[1][0], grid.at[1][1]);
   const Pair z(grid.at[2][0], grid.at[2][1]);
   for (const BoxedTriangle& entry : list) {
     const TriangleBox& box = boxes_[entry.triangle];
+    if (box.CalcSquaredDistance(around) > most) {
+      continue;
+    }
     const Pair xx = box.CalcSquaredAlong(0, x);
     const Pair yy = box.CalcSquaredAlong(1, y);
     const Pair zz = box.CalcSquaredAlong(2, z);
@@ -383,23 +419,31 @@ void NearSearch::FilterNodes(const BoxedList& list, std::uint32_t first, const N
   }
 }
 
-// Looks at one triangle after the other for the closest one to p.
+// Looks at triangles, eight at once, for the closest one to p: the first of several as close.
 class NearSearch::Search {
  public:
-  Search(const NearSearch& of, const Vec3& p, std::uint32_t hint) : of_(of), p_(p) { Look(hint); }
+  Search(const NearSearch& of, const Vec3& p, std::uint32_t hint) : eight_(of, p) {
+    const TrianglePoint point = of.ClosestOn(hint, p);
+    Take((point.q - p).squaredNorm(), hint, point);
+  }
 
   void Look(std::uint32_t triangle) {
-    const TrianglePoint point = of_.ClosestOn(triangle, p_);
-    const double found = (point.q - p_).squaredNorm();
-    if (found < squared_) {
-      squared_ = found;
-      nearest_ = {std::sqrt(found), triangle, point};
-      limit_ = nearest_.distance * kSlack + kRounding;
-      limit_squared_ = limit_ * limit_;
+    if (eight_.Add(triangle)) {
+      Finish();
     }
   }
 
-  [[nodiscard]] const Nearest& nearest() const { return nearest_; }
+  // Looks at what is left.
+  const Nearest& Finish() {
+    eight_.Calc();
+    for (int i = 0; i < eight_.count(); ++i) {
+      if (eight_.squared(i) < squared_) {
+        Take(eight_.squared(i), eight_.triangle(i), eight_.PointOf(i));
+      }
+    }
+    eight_.Clear();
+    return nearest_;
+  }
 
   // What is further away than this is not the closest.
   [[nodiscard]] double limit() const { return limit_; }
@@ -407,11 +451,17 @@ class NearSearch::Search {
   [[nodiscard]] double limit_squared() const { return limit_squared_; }
 
  private:
-  const NearSearch& of_;
-  const Vec3& p_;
-  double squared_{std::numeric_limits<double>::infinity()};
-  double limit_{squared_};
-  double limit_squared_{squared_};
+  void Take(double squared, std::uint32_t triangle, const TrianglePoint& point) {
+    squared_ = squared;
+    nearest_ = {std::sqrt(squared), triangle, point};
+    limit_ = nearest_.distance * kSlack + kRounding;
+    limit_squared_ = limit_ * limit_;
+  }
+
+  EightTriangles eight_;
+  double squared_{0};
+  double limit_{0};
+  double limit_squared_{0};
   Nearest nearest_;
 };
 
@@ -431,7 +481,7 @@ Nearest NearSearch::FindIn(const NearList& list, const Vec3& p, double offset,
       search.Look(entry.triangle);
     }
   }
-  return search.nearest();
+  return search.Finish();
 }
 
 Nearest NearSearch::FindSignedInBoxed(const BoxedList& list, const Vec3& p,
@@ -442,7 +492,7 @@ Nearest NearSearch::FindSignedInBoxed(const BoxedList& list, const Vec3& p,
       search.Look(entry.triangle);
     }
   }
-  return GiveSign(p, search.nearest());
+  return GiveSign(p, search.Finish());
 }
 
 Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,

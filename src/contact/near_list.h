@@ -150,10 +150,66 @@ class NearSearch {
 
   /** Does what Mesh::ClosestOn does, with what was made ready for it. */
   [[nodiscard]] TrianglePoint ClosestOn(std::uint32_t triangle, const Vec3& p) const {
-    return CalcClosestOnTriangle(p, sides_[triangle], [&](std::size_t k) -> const Vec3& {
-      return mesh_.vertices[mesh_.triangles[triangle][k]];
-    });
+    return CalcClosestOnTriangle(p, corners_[triangle]);
   }
+
+  /** Up to eight triangles of which the closest points are found at once. */
+  class EightTriangles {
+   public:
+    static constexpr int kMost = 8;  ///< What the kernel takes at once.
+
+    explicit EightTriangles(const NearSearch& of) : of_(of) {}
+
+    EightTriangles(const NearSearch& of, const Vec3& p) : of_(of) {
+      for (int i = 0; i < kMost; ++i) {
+        SetPoint(i, p);
+      }
+    }
+
+    /** True where there are eight now. */
+    bool Add(std::uint32_t triangle) {
+      triangles_[count_++] = triangle;
+      return count_ == kMost;
+    }
+
+    /** Adds a triangle with a point of its own. */
+    bool Add(std::uint32_t triangle, const Vec3& p) {
+      SetPoint(count_, p);
+      return Add(triangle);
+    }
+
+    void Calc() {
+      const auto calc = count_ > 1 ? of_.calc_closest_ : &CalcEightClosestScalar;
+      calc(of_.corners_.data(), triangles_, count_, points_, &closest_);
+    }
+
+    void Clear() { count_ = 0; }
+
+    [[nodiscard]] int count() const { return count_; }
+
+    [[nodiscard]] std::uint32_t triangle(int i) const { return triangles_[i]; }
+
+    /** The square of the distance. */
+    [[nodiscard]] double squared(int i) const { return closest_.squared[i]; }
+
+    [[nodiscard]] TrianglePoint PointOf(int i) const {
+      return {{closest_.q.at[0][i], closest_.q.at[1][i], closest_.q.at[2][i]},
+              static_cast<TriangleFeature>(closest_.features[i])};
+    }
+
+   private:
+    void SetPoint(int i, const Vec3& p) {
+      points_.at[0][i] = p.x();
+      points_.at[1][i] = p.y();
+      points_.at[2][i] = p.z();
+    }
+
+    const NearSearch& of_;
+    int count_{0};
+    std::uint32_t triangles_[kMost]{};  // Those that are not wanted exist, too.
+    EightPoints points_{};
+    EightClosest closest_;
+  };
 
   /** False where the triangle's box is further from p than `distance`. */
   [[nodiscard]] bool MayReach(std::uint32_t triangle, const Vec3& p, double distance) const {
@@ -211,12 +267,26 @@ class NearSearch {
       return x * x + y * y + z * z;
     }
 
+    // Of another box.
+    [[nodiscard, gnu::always_inline]] double CalcSquaredDistance(const TriangleBox& other) const {
+      double sum = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double beyond = std::max(
+            std::abs(other.centre[axis] - centre[axis]) - half[axis] - other.half[axis], 0.0);
+        sum += beyond * beyond;
+      }
+      return sum;
+    }
+
     // What one axis adds to that, at two places.
     [[nodiscard, gnu::always_inline]] Pair CalcSquaredAlong(std::size_t axis, Pair p) const {
       const Pair beyond = ((p - Pair(centre[axis])).Abs() - Pair(half[axis])).Positive();
       return beyond * beyond;
     }
   };
+
+  // A little larger than the nodes' own. Its radius is not set.
+  [[nodiscard]] static TriangleBox BoxAround(const NodeGrid& grid);
 
   // How a triangle goes on in its face.
   struct Surroundings {
@@ -231,7 +301,8 @@ class NearSearch {
 
   const Mesh& mesh_;
   std::vector<TriangleBox> boxes_;
-  std::vector<TriangleSides> sides_;
+  std::vector<TriangleCorners> corners_;
+  CalcEightClosest calc_closest_{ChooseEightClosest()};
   std::vector<Surroundings> surroundings_;
   std::vector<double> rim_bend_;  // Of each vertex: tangent of a rim's turn; infinite: unknown.
 };

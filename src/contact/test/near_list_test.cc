@@ -48,6 +48,68 @@ void ExpectEqual(const NearTriangle& a, const NearTriangle& b) {
   EXPECT_EQ(a.distance, b.distance);
 }
 
+// Triangles of all shapes, slivers without area too, and points in all places about them: also
+// where a corner, an edge or the inside are equally near.
+struct ClosestCase {
+  std::vector<TriangleCorners> triangles;
+  EightPoints points{};
+
+  explicit ClosestCase(Random* random) {
+    const auto draw = [&] { return std::round(random->Uniform(-3, 3)) + Jitter(random); };
+    for (std::size_t i = 0; i < 8; ++i) {
+      std::array<Vec3, 3> corners;
+      do {  // Meshes have no triangle with two corners in one place.
+        for (Vec3& corner : corners) {
+          corner = {draw(), draw(), draw()};
+        }
+      } while (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]);
+      if (random->Uniform(0, 1) < 0.1) {
+        corners[2] = 0.5 * (corners[0] + corners[1]);
+      }
+      triangles.push_back(MakeTriangleCorners(corners[0], corners[1], corners[2]));
+      for (auto& coordinate : points.at) {
+        coordinate[i] = draw();
+      }
+    }
+  }
+
+  static double Jitter(Random* random) {
+    return random->Uniform(0, 1) < 0.5 ? 0 : random->Uniform(-1, 1);
+  }
+};
+
+TEST(ClosestKernel, GivesTheSameBitsWithAndWithoutVectors) {
+#ifdef HVAS_HAS_AVX2_KERNEL
+  if (!__builtin_cpu_supports("avx2")) {
+    EXPECT_EQ(ChooseEightClosest(), &CalcEightClosestScalar);
+    return;
+  }
+  EXPECT_EQ(ChooseEightClosest(), &CalcEightClosestAvx2);
+  constexpr std::array<std::uint32_t, 8> kNumbers{7, 6, 5, 4, 3, 2, 1, 0};
+  Random random(23);
+  std::array<int, 7> met{};
+  for (int i = 0; i < 20000; ++i) {
+    const ClosestCase given(&random);
+    const int count = 1 + i % 8;
+    EightClosest vector;
+    EightClosest scalar;
+    CalcEightClosestAvx2(given.triangles.data(), kNumbers.data(), count, given.points, &vector);
+    CalcEightClosestScalar(given.triangles.data(), kNumbers.data(), count, given.points, &scalar);
+    for (int k = 0; k < count; ++k) {
+      ASSERT_EQ(vector.features[k], scalar.features[k]);
+      ASSERT_EQ(vector.squared[k], scalar.squared[k]);
+      for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(vector.q.at[axis][k], scalar.q.at[axis][k]);
+      }
+      ++met[static_cast<std::size_t>(scalar.features[k])];
+    }
+  }
+  for (const int times : met) {
+    EXPECT_GT(times, 1000);
+  }
+#endif
+}
+
 TEST(NearSearch, FiltersOctantsAtOnceAsItDoesOneByOne) {
   Random random(21);
   for (const ShapeSource& part : ListParts()) {
