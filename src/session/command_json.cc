@@ -18,7 +18,7 @@ using simulation::PartState;
 using simulation::SequenceStep;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
-constexpr std::array kStepKinds{"base", "insert", "park", "remove"};
+constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {
   return Fail(ErrorCode::kUnreadable, fmt::format("{} has no valid \"{}\".", what, field));

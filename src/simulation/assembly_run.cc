@@ -52,7 +52,7 @@ AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* d
 }
 
 void AssemblyRun::OnDropped(const SimulationEvent& dropped) {
-  if (dropped.was_seated) {
+  if (dropped.was_seated || physics().placement(dropped.occurrence) == Placement::kParked) {
     return;
   }
   // What was put together on the table comes out together.
@@ -151,10 +151,22 @@ std::string AssemblyRun::ExplainPassage(const PartResult& result) const {
              : std::string();
 }
 
+std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
+  const SequenceStep* aside = FindAside(model().sequence, id);
+  if (aside == nullptr || physics().placement(id) != Placement::kPlaced) {
+    return {};
+  }
+  const std::string& moved = PathOf(aside->occurrence);
+  return aside->way.empty() ? fmt::format("goes in while {} is moved aside by {:.1f} mm", moved,
+                                          units::ToMm(aside->engage_distance))
+                            : fmt::format("goes in while {} is turned aside", moved);
+}
+
 std::string AssemblyRun::MakeNote(const PartResult& result) const {
   std::string note;
-  for (const std::string& item : {DescribeAllowances(result.allowances),
-                                  ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
+  for (const std::string& item :
+       {DescribeAllowances(result.allowances), DescribeAside(result.occurrence),
+        ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
     note += (note.empty() || item.empty() ? "" : "; ") + item;
   }
   return note;
@@ -168,7 +180,9 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   AddHold(step.occurrence);
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
+  if (step.kind != SequenceStep::Kind::kAside) {
+    result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
+  }
   result.passage = passages_.passage(step.occurrence);
   result.note = MakeNote(result);
   int mates = 0;
@@ -199,6 +213,9 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
   const OccurrenceId id = worker.step->occurrence;
+  if (IsWithinProduct(worker.step->kind)) {
+    return IsInVain(*worker.step);
+  }
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
   return (dropped && dropped->was_seated) ||
          (IsSinglePart(*worker.step) && physics().placement(id) == Placement::kPlaced);
@@ -213,6 +230,13 @@ bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker
 bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
          physics().placement(step.occurrence) == Placement::kPlaced;
+}
+
+bool AssemblyRun::IsInVain(const SequenceStep& step) const {
+  // The order has the part that passes after each one that goes aside.
+  return HasNothingToMove(step) ||
+         (step.kind == SequenceStep::Kind::kAside &&
+          physics().placement((&step + 1)->occurrence) == Placement::kPlaced);
 }
 
 spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
@@ -333,7 +357,9 @@ const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
   for (std::size_t i = begin; i < end; ++i) {
     const SequenceStep& step = steps[i];
     const Turn& turn = turns_[i];
-    if (!turn.is_finished || turn.is_seated || step.kind != SequenceStep::Kind::kInsert ||
+    const bool is_insertion = step.kind == SequenceStep::Kind::kInsert;
+    const bool is_return = step.kind == SequenceStep::Kind::kReturn && !IsInVain(step);
+    if (!turn.is_finished || turn.is_seated || !(is_insertion || is_return) ||
         turn.tries >= (is_at_end ? kMostTries : kMostTries - 1) ||
         physics().placement(step.occurrence) == Placement::kPlaced ||
         physics().FindMissingPartner(step).is_valid()) {
@@ -354,6 +380,9 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
   Worker* worker = FindWorkerFor(step);
   if (worker == nullptr) {
     return false;
+  }
+  if (IsInVain(step)) {
+    return true;
   }
   if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
     physics().PlaceInFixture(step.occurrence);

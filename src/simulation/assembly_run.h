@@ -68,6 +68,8 @@ class AssemblyRun final : public PartRun {
   [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
   /** The part was in its place before the run began. */
   [[nodiscard]] bool IsInPlaceAlready(const SequenceStep& step) const;
+  /** A move within the product has nothing to move, or nothing to let pass. */
+  [[nodiscard]] bool IsInVain(const SequenceStep& step) const;
   /** The step of a part that was in its place before is to be done again. */
   void OnDropped(const SimulationEvent& dropped) override;
   void FinishStep(const SequenceStep& step, const Worker& worker);
@@ -81,6 +83,8 @@ class AssemblyRun final : public PartRun {
   /** Explains what a part went through on its way, beyond what the two are allowed; empty where
    that is nothing. */
   [[nodiscard]] std::string ExplainPassage(const PartResult& result) const;
+  /** Says which part is moved aside to let this one pass; empty where none is. */
+  [[nodiscard]] std::string DescribeAside(product::OccurrenceId id) const;
   /** What is odd about a part's place. */
   [[nodiscard]] std::string MakeNote(const PartResult& result) const;
   /** A step that has failed and is to be tried again now; null: none.

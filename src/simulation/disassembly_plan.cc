@@ -80,6 +80,8 @@ class DisassemblyPlanner {
   void TakeApart(Unit rest, DisassemblyPlan* plan);
   /** Takes a subassembly that is put together first out as one body. */
   [[nodiscard]] bool TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan);
+  /** Takes out a part that another one lets pass. */
+  [[nodiscard]] bool TakeOutPast(Unit* rest, DisassemblyPlan* plan);
   void AddRemoval(SequenceStep step, DisassemblyPlan* plan);
   /** Reports the progress where so many parts have been looked at. */
   void Report(std::size_t parts) const;
@@ -121,13 +123,17 @@ DisassemblyPlan DisassemblyPlanner::Plan() {
 
 void DisassemblyPlanner::AddRemoval(SequenceStep step, DisassemblyPlan* plan) {
   Removal removal;
-  step.kind = SequenceStep::Kind::kRemove;
-  std::vector<bool> is_in_place;
-  for (const Body& body : model_.bodies) {
-    is_in_place.push_back(extraction_.is_present(body.occurrence));
+  if (IsWithinProduct(step.kind)) {
+    removal.way_length = step.engage_distance;
+  } else {
+    step.kind = SequenceStep::Kind::kRemove;
+    std::vector<bool> is_in_place;
+    for (const Body& body : model_.bodies) {
+      is_in_place.push_back(extraction_.is_present(body.occurrence));
+    }
+    removal.way_length = extraction_.CalcWayLength(UnitOf(step), step.extraction_W);
+    removal.breakaway = CalcBreakaway(model_, step, is_in_place);
   }
-  removal.way_length = extraction_.CalcWayLength(UnitOf(step), step.extraction_W);
-  removal.breakaway = CalcBreakaway(model_, step, is_in_place);
   removal.step = std::move(step);
   plan->removals.push_back(std::move(removal));
   if (!options_.target.is_valid()) {
@@ -166,6 +172,14 @@ bool DisassemblyPlanner::TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan) {
   return false;
 }
 
+bool DisassemblyPlanner::TakeOutPast(Unit* rest, DisassemblyPlan* plan) {
+  std::vector<SequenceStep> steps = extraction_.TryRemovePast(rest, {});
+  for (SequenceStep& step : steps) {
+    AddRemoval(std::move(step), plan);
+  }
+  return !steps.empty();
+}
+
 void DisassemblyPlanner::TakeApart(Unit rest, DisassemblyPlan* plan) {
   // Small parts first; the largest, the base, is the last and stays.
   std::stable_sort(rest.begin(), rest.end(), [this](OccurrenceId x, OccurrenceId y) {
@@ -176,7 +190,7 @@ void DisassemblyPlanner::TakeApart(Unit rest, DisassemblyPlan* plan) {
   while (rest.size() > 1) {
     if (std::optional<SequenceStep> step = extraction_.TryRemoveOne(&rest)) {
       AddRemoval(std::move(*step), plan);
-    } else if (!TakeOutSubassembly(&rest, plan)) {
+    } else if (!TakeOutSubassembly(&rest, plan) && !TakeOutPast(&rest, plan)) {
       break;
     }
   }
@@ -188,9 +202,17 @@ void DisassemblyPlanner::TakeApart(Unit rest, DisassemblyPlan* plan) {
 void DisassemblyPlanner::PlanAll(DisassemblyPlan* plan) {
   TakeApart(in_place_, plan);
   ShowAll();
+  OccurrenceId aside;  // It is no obstacle to the part that it lets pass.
   for (Removal& removal : plan->removals) {
-    removal.waits_for =
-        extraction_.ListObstacles(UnitOf(removal.step), removal.step.extraction_W, {});
+    if (removal.step.kind == SequenceStep::Kind::kRemove) {
+      removal.waits_for =
+          extraction_.ListObstacles(UnitOf(removal.step), removal.step.extraction_W, {});
+      std::erase_if(removal.waits_for, [aside](const Obstacle& obstacle) {
+        return aside.is_valid() && obstacle.occurrence == aside;
+      });
+    }
+    const bool goes_aside = removal.step.kind == SequenceStep::Kind::kAside;
+    aside = goes_aside ? removal.step.occurrence : OccurrenceId();
   }
 }
 
@@ -300,6 +322,9 @@ PartSet DisassemblyPlanner::FindSetInOrder() {
   PlanAll(&all);
   PartSet set;
   for (const Removal& removal : all.removals) {
+    if (removal.step.kind != SequenceStep::Kind::kRemove) {
+      return {};  // Only moves out of the product are looked at here.
+    }
     set.push_back(removal.step.occurrence);
     if (removal.step.occurrence == options_.target) {
       break;

@@ -10,12 +10,13 @@
 
 namespace hvas::simulation {
 
-/** One move of a disassembly: a part, or a subassembly as one body, comes out. */
+/** One move of a disassembly: a part, or a subassembly as one body, comes out; or a part is moved
+ within the product, to let the next one pass. */
 struct Removal {
-  SequenceStep step;                ///< Step of kind kRemove.
+  SequenceStep step;                ///< Step of kind kRemove, kAside or kReturn.
   std::vector<Obstacle> waits_for;  ///< Parts in its way when all are in place; each comes first.
   double way_length{0};  ///< Way until it is clear of the boxes of all that is in place [m].
-  double breakaway{0};   ///< CalcBreakaway() when its turn comes [N].
+  double breakaway{0};   ///< kRemove: CalcBreakaway() when its turn comes [N].
 };
 
 /** How a product is taken apart, or how one part is got out of it. */

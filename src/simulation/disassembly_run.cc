@@ -28,6 +28,11 @@ DisassemblyRun::DisassemblyRun(Simulation* simulation, const DisassemblyPlan* pl
 }
 
 bool DisassemblyRun::IsOut(const Removal& removal) const {
+  const Placement placement = physics().placement(removal.step.occurrence);
+  if (IsWithinProduct(removal.step.kind)) {
+    const bool goes_aside = removal.step.kind == SequenceStep::Kind::kAside;
+    return placement == (goes_aside ? Placement::kParked : Placement::kPlaced);
+  }
   const std::optional<SimulationEvent>& dropped = dropped_[removal.step.occurrence.index()];
   return dropped && !dropped->was_seated && dropped->to_place >= removal.step.engage_distance;
 }
@@ -100,6 +105,10 @@ void DisassemblyRun::Advance() {
       return;
     }
     const Removal& removal = plan_.removals[next_];
+    if (!is_busy_ && HasNothingToMove(removal.step)) {
+      ++next_;
+      continue;
+    }
     if (is_busy_) {
       if (!HasFinished(removal)) {
         return;

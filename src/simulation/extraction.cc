@@ -26,6 +26,7 @@ using product::OccurrenceId;
 
 constexpr double kWayRelief = kDepthTolerance + 10e-6;  // [m]; a way is free with less
 constexpr double kShortestStep = 0.25e-3;               // [m] between looks along a way
+constexpr double kEndlessWay = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a thin wall.
 
 }  // namespace
@@ -41,6 +42,7 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
       product_(*input.product),
       is_present_(product_.occurrences.size(), true),
       is_in_unit_(product_.occurrences.size(), false),
+      is_aside_(product_.occurrences.size(), false),
       mates_of_(product_.occurrences.size()),
       memories_(product_.occurrences.size()),
       giving_memories_(product_.occurrences.size()),
@@ -118,7 +120,7 @@ std::vector<Vec3> Extraction::CollectDirections(const Unit& unit) const {
   const auto add = [&directions](const Vec3& d) { AddDirection(d, &directions); };
   for (const OccurrenceId id : unit) {
     for (const MateView& view : mates_of_[id.index()]) {
-      if (!IsAround(view.other)) {
+      if (!IsMated(view.other)) {
         continue;
       }
       switch (view.mate->kind) {
@@ -188,7 +190,7 @@ bool Extraction::MatesAllow(const Unit& unit, const Vec3& direction) const {
   return std::all_of(unit.begin(), unit.end(), [&](OccurrenceId id) {
     const std::vector<MateView>& views = mates_of_[id.index()];
     return std::all_of(views.begin(), views.end(), [&](const MateView& view) {
-      return !IsAround(view.other) || IsAllowed(view, direction) || MayPass(view, id, direction);
+      return !IsMated(view.other) || IsAllowed(view, direction) || MayPass(view, id, direction);
     });
   });
 }
@@ -255,11 +257,11 @@ double Extraction::CalcEngagement(const Unit& unit, const Vec3& direction) const
       const bool is_wall =
           (mate.kind == MateKind::kFaceFace || mate.kind == MateKind::kPrismatic) &&
           std::abs(view.axis_W.dot(direction)) < kParallel;
-      if (IsAround(view.other) && is_wall) {
+      if (IsMated(view.other) && is_wall) {
         is_guided = true;
         farthest = std::max(farthest, CalcWallTravel(view, id, direction));
       }
-      if (!IsAround(view.other) || mate.kind != MateKind::kAxisHole ||
+      if (!IsMated(view.other) || mate.kind != MateKind::kAxisHole ||
           std::abs(view.axis_W.dot(direction)) <= kParallel) {
         continue;
       }
@@ -278,7 +280,7 @@ std::vector<contact::IgnoredPair> Extraction::CollectIgnored(OccurrenceId id,
                                                              const Vec3& direction) const {
   std::vector<contact::IgnoredPair> ignored;
   for (const MateView& view : mates_of_[id.index()]) {
-    if (!IsAround(view.other) || !mates::HasFit(view.mate->kind) ||
+    if (!IsMated(view.other) || !mates::HasFit(view.mate->kind) ||
         IsAcrossOpenAxis(view, direction)) {
       continue;
     }
@@ -301,20 +303,30 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
   SetPresent(input_.fixtures, true);
   for (const SequenceStep& step : steps) {
     const Unit unit = UnitOf(step);
-    if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
+    const OccurrenceId id = step.occurrence;
+    const bool goes_aside = step.kind == SequenceStep::Kind::kAside;
+    const bool returns = step.kind == SequenceStep::Kind::kReturn;
+    if (returns) {
+      MoveBack(id);
+    }
+    if (step.way.empty() && (goes_aside || returns || step.kind == SequenceStep::Kind::kInsert)) {
+      const double length = IsWithinProduct(step.kind) ? step.engage_distance : kEndlessWay;
       SetUnit(unit, true);
-      RelieveWay(unit, step.extraction_W);
+      RelieveWay(unit, goes_aside ? Vec3(-step.extraction_W) : step.extraction_W, length);
       SetUnit(unit, false);
     }
     SetPresent(unit, step.kind != SequenceStep::Kind::kPark);
+    if (goes_aside) {
+      MoveAside(id, GoalOf(step, product_.occurrences[id.index()].X_WB));
+    }
   }
   return reliefs_.depths() != before;
 }
 
-void Extraction::RelieveWay(const Unit& unit, const Vec3& direction) {
+void Extraction::RelieveWay(const Unit& unit, const Vec3& direction, double length) {
   const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
-  const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
+  const int last = static_cast<int>(std::min(length, CalcExitDistance(unit, direction)) / step);
   FaceReliefs::Depths deepest;
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     for (const Member& member : members) {
@@ -441,7 +453,7 @@ std::optional<SequenceStep> Extraction::TryRemove(const Unit& unit, Memory* memo
   std::ptrdiff_t mates_around = 0;
   for (const OccurrenceId id : unit) {
     mates_around += std::count_if(mates_of_[id.index()].begin(), mates_of_[id.index()].end(),
-                                  [this](const MateView& view) { return IsAround(view.other); });
+                                  [this](const MateView& view) { return IsMated(view.other); });
   }
   const auto still_blocked = [this](const Attempt& attempt) {
     return attempt.blocker && attempt.blocker->occurrence.is_valid() &&
@@ -587,7 +599,7 @@ std::vector<Obstacle> Extraction::ListObstacles(const Unit& unit, const Vec3& di
   bool is_blocked = false;
   for (const OccurrenceId id : unit) {
     for (const MateView& view : mates_of_[id.index()]) {
-      if (!is_blocked && IsAround(view.other) && !IsAllowed(view, direction)) {
+      if (!is_blocked && IsMated(view.other) && !IsAllowed(view, direction)) {
         is_blocked = add({view.other, 0, view.mate->id});
       }
     }

@@ -12,6 +12,7 @@
 #include "planning/way.h"
 #include "simulation/face_reliefs.h"
 #include "simulation/sequence.h"
+#include "sweep/path.h"
 
 namespace hvas::simulation {
 
@@ -26,6 +27,12 @@ struct Obstacle {
   product::OccurrenceId occurrence;  ///< Invalid: the table.
   double travelled{0};               ///< Length of the way before it is met [m].
   product::MateId mate;              ///< Mate that forbids the direction; invalid: contact.
+};
+
+/** How long ways that turn are searched for. */
+enum class TurningEffort : std::uint8_t {
+  kBrief,  ///< Some seconds for a part.
+  kLong,   ///< Up to kWayLooks for a part.
 };
 
 /** Two faces that meet on a way, deeper than a way is free with. */
@@ -130,7 +137,30 @@ class Extraction {
    tried, and all searches together take no more looks than kMostLooks, at no more points than
    kMostPoints.
    @param deferred  Sorted; parts that are tried after all others. */
-  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(Unit* rest, const Unit& deferred);
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(Unit* rest, const Unit& deferred,
+                                                             TurningEffort effort);
+
+  /** Takes out the first of these parts that can go once another one is moved a part of its way,
+   along a straight line or about the axis of its mates, and erases it from them: a bolt is slid
+   aside, a drawer is opened, a lid is turned up. The part that is moved goes back, so that all else
+   is as before. Parts that are held by more than clearance are not moved, and all searches together
+   take no more looks than kMostPassingLooks.
+   @param deferred  Sorted; parts that are tried after all others.
+   @returns the steps in the order of assembly: aside, the part's own, back; empty: none can go. */
+  [[nodiscard]] std::vector<SequenceStep> TryRemovePast(Unit* rest, const Unit& deferred);
+
+  /** How many looks at a part the search for what can be moved aside takes in all: some seconds to
+   a minute. A choice. */
+  static constexpr std::uint64_t kMostPassingLooks = 400'000;
+
+  /** Says that the search for what can be moved aside was ended; empty where it was not. */
+  [[nodiscard]] std::string ExplainPassing() const;
+
+  /** Moves a part that is present to a pose beside its place, where its mates hold nothing. */
+  void MoveAside(product::OccurrenceId id, const spatial::Pose& X_WB);
+
+  /** Moves it back into its place. */
+  void MoveBack(product::OccurrenceId id);
 
   /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
    */
@@ -237,8 +267,8 @@ class Extraction {
     std::ptrdiff_t mates_around{-1};
   };
 
-  /** Lets the faces give way that a unit meets on its way out. */
-  void RelieveWay(const Unit& unit, const Vec3& direction);
+  /** Lets the faces give way that a unit meets on its way out, as far as it goes on it [m]. */
+  void RelieveWay(const Unit& unit, const Vec3& direction, double length);
   /** The parts of a unit that goes along a direction, with what contact leaves out. */
   [[nodiscard]] std::vector<Member> ListMembers(const Unit& unit, const Vec3& direction) const;
   /** The query for what a member meets deeper than `depth` [m]; spans of the member. */
@@ -288,6 +318,11 @@ class Extraction {
     return is_present_[id.index()] && !is_in_unit_[id.index()];
   }
 
+  /** Whether mates with a part hold: it is there, in its place. */
+  [[nodiscard]] bool IsMated(product::OccurrenceId id) const {
+    return IsAround(id) && !is_aside_[id.index()];
+  }
+
   void SetUnit(const Unit& unit, bool is_in_unit);
   /** Faces of the mates of a part that fits answer for. Those of an axis that the part leaves
    across it have contact. */
@@ -320,6 +355,7 @@ class Extraction {
   const product::Product& product_;
   std::vector<bool> is_present_;
   std::vector<bool> is_in_unit_;
+  std::vector<bool> is_aside_;
   std::vector<std::vector<MateView>> mates_of_;
   std::vector<std::vector<Vec3>> plane_lines_;  // By occurrence, in its frame.
   std::vector<spatial::Box> boxes_;
@@ -354,6 +390,43 @@ class Extraction {
   [[nodiscard]] bool IsHeldFirmly(product::OccurrenceId id) const;
 
   std::vector<Search> searches_;  // By occurrence.
+
+  /** Whether a part stands in a way of another one that was tried, or has a mate with it. */
+  [[nodiscard]] bool MayStandInTheWay(product::OccurrenceId id, product::OccurrenceId of) const;
+
+  /** A motion of a part that its mates leave free. */
+  struct InnerMotion {
+    sweep::Path way;  ///< Poses X_WB from its place on.
+    Vec3 direction;   ///< Unit; zero: it turns.
+  };
+
+  /** The straight motions of a part, then its turns about the axis of its mates. */
+  [[nodiscard]] std::vector<InnerMotion> ListInnerMotions(product::OccurrenceId id);
+  /** Whether mates with parts present leave a turn about an axis free. */
+  [[nodiscard]] bool MayTurn(product::OccurrenceId id, const Vec3& axis_W) const;
+  /** The beginning of a motion, in short steps, as far as nothing is met deeper than a way is free
+   with. */
+  [[nodiscard]] sweep::Path FindFreeWay(product::OccurrenceId id, const InnerMotion& motion);
+
+  /** The step of a part that can go once another one is at a place on its way. */
+  struct Passing {
+    SequenceStep step;
+    std::size_t place{0};  ///< Index on the way, where the other part is out of the way best.
+  };
+
+  /** Finds the first of the parts that are blocked that can go while another one is on its way.
+   None is taken out. */
+  [[nodiscard]] std::optional<Passing> FindPassing(product::OccurrenceId moved,
+                                                   const sweep::Path& way, const Unit& blocked);
+  /** Takes out the first of the parts that are blocked that can go once this one is moved. */
+  [[nodiscard]] std::vector<SequenceStep> TryRemovePast(product::OccurrenceId moved,
+                                                        const Unit& blocked);
+  /** The step of a part with another one aside; it stays where it is. */
+  [[nodiscard]] std::optional<SequenceStep> FindWayPast(product::OccurrenceId id);
+
+  [[nodiscard]] bool IsPassingOver() const { return passing_looks_ >= kMostPassingLooks; }
+
+  std::uint64_t passing_looks_{0};
 
   [[nodiscard]] bool IsSearchOver() const {
     return looks_ >= kMostLooks || points_looked_at_ >= kMostPoints;

@@ -28,7 +28,7 @@ constexpr std::uint64_t kBriefLooks = 10'000;  // Some seconds: a choice.
 bool Extraction::IsHeldFirmly(OccurrenceId id) const {
   const std::vector<MateView>& views = mates_of_[id.index()];
   return std::any_of(views.begin(), views.end(), [&](const MateView& view) {
-    const bool has_fit = mates::HasFit(view.mate->kind) && IsAround(view.other);
+    const bool has_fit = mates::HasFit(view.mate->kind) && IsMated(view.other);
     return has_fit && view.mate->fit && view.mate->fit->kind != product::FitKind::kClearance &&
            view.mate->fit->kind != product::FitKind::kPassage &&
            view.mate->fit->kind != product::FitKind::kThread;
@@ -55,7 +55,7 @@ std::optional<SequenceStep> Extraction::FindTurningWay(OccurrenceId id, std::uin
   planning::WayProblem problem = MakeWayProblem(id);
   problem.directions_W = ListDirections({id});
   for (const MateView& view : mates_of_[id.index()]) {
-    if (view.mate->kind == MateKind::kAxisHole && IsAround(view.other)) {
+    if (view.mate->kind == MateKind::kAxisHole && IsMated(view.other)) {
       const product::Connector& hole = view.mate->a;
       const spatial::Pose X_WM = product_.occurrences[hole.occurrence.index()].X_WB * hole.X_BM;
       problem.axes.push_back({X_WM.p(), view.axis_W, 0});
@@ -117,14 +117,18 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(
   return std::nullopt;
 }
 
-std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit& deferred) {
+std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit& deferred,
+                                                         TurningEffort effort) {
   if (input_.shapes.empty() || input_.way_looks == 0) {
     return std::nullopt;
   }
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long. Of
   // our pairs with ways that turn, two in three are found by the first, all but three by the
   // second.
-  for (const std::uint64_t most : {kBriefLooks, std::uint64_t{60'000}, kWayLooks}) {
+  const std::vector<std::uint64_t> tries = effort == TurningEffort::kBrief
+                                               ? std::vector{kBriefLooks, std::uint64_t{60'000}}
+                                               : std::vector{kWayLooks};
+  for (const std::uint64_t most : tries) {
     const std::uint64_t budget = std::min(most, input_.way_looks);
     const auto is_new = [&](OccurrenceId, const Search& before) {
       return before.looks < budget || before.is_present != is_present_;

@@ -150,6 +150,9 @@ std::optional<Unit> GapExplainer::FindEarlier() const {
       case SequenceStep::Kind::kRemove:
         std::erase_if(present, [&unit](OccurrenceId part) { return Contains(unit, part); });
         break;
+      case SequenceStep::Kind::kAside:
+      case SequenceStep::Kind::kReturn:
+        break;  // The part stays in the product.
     }
   }
   return std::nullopt;
@@ -205,7 +208,8 @@ std::optional<WayOut> GapExplainer::FindWayOut(OccurrenceId id, const Freedom& f
     does_give = step.has_value();
   }
   if (!step && freedom.may_turn) {
-    step = extraction_->TryRemoveTurning(&rest, {});
+    step = extraction_->TryRemoveTurning(&rest, {}, TurningEffort::kBrief);
+    step = step ? step : extraction_->TryRemoveTurning(&rest, {}, TurningEffort::kLong);
   }
   bool does_bend = false;
   if (!step && freedom.may_bend) {

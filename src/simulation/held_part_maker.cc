@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "base/units.h"
@@ -62,6 +63,15 @@ std::vector<contact::BodyId> ListTogetherBodies(const SequenceStep& step) {
   return bodies;
 }
 
+/** Whether a mate holds a part that is aside as it holds it in its place: one that leads the part
+ there does. */
+bool HoldsAside(const mates::MateConstraint& mate, const spatial::Pose& X_WB_place,
+                const spatial::Pose& X_WB_aside) {
+  constexpr double kTolerance = 0.1e-3;  // [m]: more than shapes drawn for each other differ by.
+  const std::span<const mates::MateConstraint> one(&mate, 1);
+  return mates::CalcResidual(one, X_WB_aside) < mates::CalcResidual(one, X_WB_place) + kTolerance;
+}
+
 std::shared_ptr<const haptics::MateFaces> WithoutNeighbours(const haptics::MateFaces& faces) {
   return std::make_shared<haptics::MateFaces>(haptics::MateFaces{faces.mating, faces.mating});
 }
@@ -89,11 +99,12 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   held->p_BoBcm_B = mass.p_BoBcm_B;
   held->I_BBcm_B = mass.I_BBcm_B;
   held->surface = SurfaceOf(model_.product->part_of(id).material);
-  held->falls_when_dropped =
-      (step.members.empty() || is_table_group) && step.kind != SequenceStep::Kind::kPark;
+  held->falls_when_dropped = (step.members.empty() || is_table_group) &&
+                             step.kind != SequenceStep::Kind::kPark && !IsWithinProduct(step.kind);
   held->starts_in_place = step.kind == SequenceStep::Kind::kRemove && !is_on_table;
   const bool lies_on_table =
-      is_on_table ? is_table_group : step.members.empty() && !held->starts_in_place;
+      is_on_table ? is_table_group
+                  : step.members.empty() && !held->starts_in_place && !IsWithinProduct(step.kind);
   held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
   held->has_bent_way = !step.way.empty();
@@ -105,7 +116,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
     held->bodies.push_back(member.body);
   }
   if (step.kind == SequenceStep::Kind::kPark) {
-    held->X_WB_goal = {body.X_WB_goal.q(), body.X_WB_goal.p() + step.offset_W};
+    held->X_WB_goal = GoalOf(step, body.X_WB_goal);
     return held;
   }
   if (body.role == BodyRole::kTool) {
@@ -117,9 +128,11 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
     held->group = GroupOf(ListTogether(parts_, id));
   }
   AddMates(step, Placement::kPlaced, nullptr, held.get());
-  held->lacks_partners = held->mates.empty() && FindMissingPartner(step).is_valid();
-  held->X_WB_goal = held->starts_in_place ? held->X_WB_start : CalcPlace(*held);
-  if (can_join) {
+  held->lacks_partners = step.kind != SequenceStep::Kind::kAside && held->mates.empty() &&
+                         FindMissingPartner(step).is_valid();
+  held->X_WB_goal =
+      held->starts_in_place ? held->X_WB_start : CalcPlace(*held, GoalOf(step, body.X_WB_goal));
+  if (can_join && !IsWithinProduct(step.kind)) {
     AddTablePlaces(step, held.get());
   }
   return held;
@@ -169,18 +182,18 @@ void HeldPartMaker::AddMates(const SequenceStep& step, Placement placement,
   }
 }
 
-spatial::Pose HeldPartMaker::CalcPlace(const haptics::HeldPart& held) const {
+spatial::Pose HeldPartMaker::CalcPlace(const haptics::HeldPart& held,
+                                       const spatial::Pose& X_WB_wanted) {
   // The place is where the mates say; what they leave free is taken from the drawing (X9).
-  const spatial::Pose& X_WB_drawn = model_.bodies[held.occurrence.index()].X_WB_goal;
   std::vector<mates::MateConstraint> constraints;
   for (const haptics::HeldMate& mate : held.mates) {
     constraints.push_back({mate.capture.kind, mate.X_WM, mate.X_BN});
   }
   if (constraints.empty()) {
-    return X_WB_drawn;
+    return X_WB_wanted;
   }
-  const spatial::Pose X_before(X_WB_drawn.q(), X_WB_drawn.p() - kApproach * held.insertion_W);
-  return mates::ResolveToward(constraints, X_before, X_WB_drawn).X_WB;
+  const spatial::Pose X_before(X_WB_wanted.q(), X_WB_wanted.p() - kApproach * held.insertion_W);
+  return mates::ResolveToward(constraints, X_before, X_WB_wanted).X_WB;
 }
 
 void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held) const {
@@ -252,6 +265,11 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
         TurnToStep(*model_.product, drawn, is_a ? held->insertion_W : Vec3(-held->insertion_W),
                    model_.bodies[other.index()].X_WB_goal.q() * X_WO.q().conjugate());
     const mates::MateConstraint constraint = mates::MakeConstraint(mate, id, X_WO);
+    const spatial::Pose& X_WB_drawn = model_.bodies[id.index()].X_WB_goal;
+    if (step.kind == SequenceStep::Kind::kAside &&
+        !HoldsAside(constraint, X_WB_drawn, GoalOf(step, X_WB_drawn))) {
+      continue;
+    }
     haptics::HeldMate entry;
     entry.id = mate_id;
     entry.X_WM = constraint.X_WM;
@@ -324,7 +342,11 @@ OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
            std::find(step.members.begin(), step.members.end(), id) != step.members.end();
   };
   OccurrenceId missing;
+  const SequenceStep* aside = FindAside(model_.sequence, step.occurrence);
   const auto is_held_by = [&](OccurrenceId other) {
+    if (aside != nullptr && aside->occurrence == other) {
+      return true;  // It comes back.
+    }
     if (is_own(other) || parts_[other.index()].placement == Placement::kPlaced) {
       return !is_own(other);
     }

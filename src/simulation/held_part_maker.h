@@ -50,7 +50,9 @@ class HeldPartMaker {
   void AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
                   const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
   void AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held);
-  [[nodiscard]] spatial::Pose CalcPlace(const haptics::HeldPart& held) const;
+  /** The place that the mates have, near a wanted one. */
+  [[nodiscard]] static spatial::Pose CalcPlace(const haptics::HeldPart& held,
+                                               const spatial::Pose& X_WB_wanted);
   [[nodiscard]] spatial::Pose CalcPoseAboveTable(const SequenceStep& step) const;
 
   const Model& model_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "simulation/fastener_tool.h"
@@ -45,9 +46,18 @@ class RuleFinder {
     const auto last_park = std::find_if(steps.rbegin(), steps.rend(), [](const SequenceStep& step) {
       return step.kind == SequenceStep::Kind::kPark;
     });
+    std::optional<SequenceStep> aside;
     for (auto step = steps.begin(); step != steps.end(); ++step) {
-      if (step < last_park.base() || step->kind != SequenceStep::Kind::kInsert) {
+      if (step < last_park.base() || step->kind == SequenceStep::Kind::kBase) {
         rules_.first.push_back(*step);
+        continue;
+      }
+      if (step->kind == SequenceStep::Kind::kAside) {
+        aside = *step;
+        continue;
+      }
+      if (step->kind == SequenceStep::Kind::kReturn) {
+        rules_.moves.back().back = *step;
         continue;
       }
       FreeMove move;
@@ -56,6 +66,7 @@ class RuleFinder {
         move_of_[part] = rules_.moves.size();
       }
       move.ways.push_back({*step, {}, {}});
+      move.aside = std::exchange(aside, std::nullopt);
       rules_.moves.push_back(std::move(move));
     }
   }
@@ -103,7 +114,7 @@ class RuleFinder {
     OrderedWay& planned = move.ways.front();
     const bool is_straight = planned.step.way.empty();
     // A way on which parts give meets what gives.
-    if (!is_straight || !FindObstacles(m, &planned) ||
+    if (!is_straight || move.aside || !FindObstacles(m, &planned) ||
         (!planned.moves.empty() && planned.moves.front() < m)) {
       Bind(m);
       return;

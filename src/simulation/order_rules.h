@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -22,8 +23,12 @@ struct OrderedWay {
 struct FreeMove {
   Unit parts;                    ///< The leading part first.
   std::vector<OrderedWay> ways;  ///< The planned one first; no way that what never moves closes.
+  /** Moves of another part within the product that let this one pass: aside, and back. Both, or
+   none. */
+  std::optional<SequenceStep> aside;
+  std::optional<SequenceStep> back;
   /** It goes only as planned, after what came before it: on a way that turns, or on which parts
-   give. */
+   give, or past a part that is moved aside. */
   bool is_bound{false};
   std::string tool;           ///< The name of a fastener's tool (NameTools); empty: none is needed.
   std::string tool_of_space;  ///< The one whose space was looked at (ToolSpace::tool); or empty.

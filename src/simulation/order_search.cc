@@ -448,7 +448,14 @@ std::vector<std::size_t> ListBlocking(const OrderRules& rules,
 std::vector<SequenceStep> ListSteps(const OrderRules& rules, const FoundOrder& order) {
   std::vector<SequenceStep> steps = rules.first;
   for (std::size_t i = 0; i < order.moves.size(); ++i) {
-    steps.push_back(rules.moves[order.moves[i]].ways[order.ways[i]].step);
+    const FreeMove& move = rules.moves[order.moves[i]];
+    if (move.aside) {
+      steps.push_back(*move.aside);
+    }
+    steps.push_back(move.ways[order.ways[i]].step);
+    if (move.back) {
+      steps.push_back(*move.back);
+    }
   }
   return steps;
 }

@@ -79,6 +79,13 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
          std::none_of(step.members.begin(), step.members.end(), has_axis);
 }
 
+bool PartRun::HasNothingToMove(const SequenceStep& step) const {
+  const Placement placement = physics().placement(step.occurrence);
+  const bool goes_aside = step.kind == SequenceStep::Kind::kAside;
+  return IsWithinProduct(step.kind) && placement != Placement::kHeld &&
+         placement != (goes_aside ? Placement::kPlaced : Placement::kParked);
+}
+
 PersonTask PartRun::MakeTask(const SequenceStep& step) {
   const Model& model = this->model();
   const Body& body = model.bodies[step.occurrence.index()];
@@ -92,9 +99,9 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) {
     task.X_WG_goal = physics().pose(step.occurrence) * X_BG;
   } else {
     task.X_WG_start = physics().pose(step.occurrence) * X_BG;
-    task.X_WG_goal = body.X_WB_goal * X_BG;
-    task.X_WG_goal = {task.X_WG_goal.q(), task.X_WG_goal.p() + step.offset_W};
+    task.X_WG_goal = GoalOf(step, body.X_WB_goal) * X_BG;
   }
+  task.starts_on_way = IsWithinProduct(step.kind);
   task.extraction_W = step.extraction_W;
   task.engage_distance = step.engage_distance;
   if (!step.way.empty()) {

@@ -136,6 +136,8 @@ class PartRun : public Sink {
   [[nodiscard]] std::string DescribeHardest(const HoldMetrics& metrics) const;
   /** Whether no mate with a part in its place but planes guides what moves in a step. */
   [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
+  /** Whether a part that a step moves within the product is not where the step begins. */
+  [[nodiscard]] bool HasNothingToMove(const SequenceStep& step) const;
   /** The task of a person who puts in or takes out what moves in a step. */
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);
 

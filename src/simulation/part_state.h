@@ -13,8 +13,9 @@ namespace hvas::simulation {
 enum class Placement : std::uint8_t {
   kLoose,  ///< The part is on the table, or falling.
   kHeld,
-  kPlaced,   ///< The part is in the product, or in a subassembly that is being put together.
-  kParked,   ///< The part is on the shelf with its subassembly.
+  kPlaced,  ///< The part is in the product, or in a subassembly that is being put together.
+  /** The part is out of the way: on the shelf with its subassembly, or beside its place. */
+  kParked,
   kPending,  ///< The part cannot be taken as long as its contact shape is not there.
 };
 

@@ -164,7 +164,8 @@ void PhysicsSide::PublishFrame() {
 
 void PhysicsSide::HandleDrop(const SimulationEvent& event) {
   Hand& hand = hands_[event.hand];
-  const bool is_shelf = hand.held_step.kind == SequenceStep::Kind::kPark;
+  const SequenceStep::Kind kind = hand.held_step.kind;
+  const bool is_shelf = kind == SequenceStep::Kind::kPark || kind == SequenceStep::Kind::kAside;
   const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
     PartState& part = parts_[id.index()];
     part.X_WB = X_WB;
@@ -172,7 +173,7 @@ void PhysicsSide::HandleDrop(const SimulationEvent& event) {
       part.placement = Placement::kPlaced;
     } else if (part.leader.is_valid() || event.onto.is_valid()) {
       part.placement = Placement::kLoose;
-    } else if (is_shelf || !hand.held_step.members.empty()) {
+    } else if (is_shelf || kind == SequenceStep::Kind::kReturn || !hand.held_step.members.empty()) {
       part.placement = Placement::kParked;  // a subassembly does not fall apart
     } else {
       part.placement = Placement::kLoose;
@@ -255,7 +256,10 @@ bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
     if (leader.is_valid() && placement == Placement::kLoose) {
       return step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
     }
-    if (step.kind == SequenceStep::Kind::kRemove) {
+    if (step.kind == SequenceStep::Kind::kReturn) {
+      return placement == Placement::kParked;
+    }
+    if (step.kind == SequenceStep::Kind::kRemove || step.kind == SequenceStep::Kind::kAside) {
       return placement == Placement::kPlaced;
     }
     return step.members.empty()

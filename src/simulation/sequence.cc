@@ -182,7 +182,8 @@ bool Planner::TakeOutBody(BlockingGraph* graph, Unit* rest, std::vector<Sequence
 void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
   const OccurrenceId blocker = graph->FindGreatestBlocker();
   const OccurrenceId id = blocker.is_valid() ? blocker : rest->front();
-  std::string reason = extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id);
+  std::string reason =
+      extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
   if (graph->is_limited()) {
     reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
                           BlockingGraph::kMostWays);
@@ -257,7 +258,18 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   if (TakeOutBody(&**graph, rest, removed, sequence)) {
     return;
   }
-  if (std::optional<SequenceStep> turning = extraction_.TryRemoveTurning(rest, connecting)) {
+  if (std::optional<SequenceStep> turning =
+          extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kBrief)) {
+    removed->push_back(std::move(*turning));
+    return;
+  }
+  if (std::vector<SequenceStep> passing = extraction_.TryRemovePast(rest, connecting);
+      !passing.empty()) {
+    removed->insert(removed->end(), passing.rbegin(), passing.rend());
+    return;
+  }
+  if (std::optional<SequenceStep> turning =
+          extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kLong)) {
     removed->push_back(std::move(*turning));
     return;
   }
@@ -376,6 +388,20 @@ const SequenceStep* FindInsertion(const Sequence& sequence, OccurrenceId id) {
   return found == sequence.steps.end() ? nullptr : &*found;
 }
 
+const SequenceStep* FindAside(const Sequence& sequence, OccurrenceId id) {
+  const SequenceStep* insertion = FindInsertion(sequence, id);
+  const bool is_let_past = insertion != nullptr && insertion != sequence.steps.data() &&
+                           (insertion - 1)->kind == SequenceStep::Kind::kAside;
+  return is_let_past ? insertion - 1 : nullptr;
+}
+
+spatial::Pose GoalOf(const SequenceStep& step, const spatial::Pose& X_WB_drawn) {
+  if (step.kind == SequenceStep::Kind::kAside && !step.way.empty()) {
+    return step.way.front();
+  }
+  return {X_WB_drawn.q(), X_WB_drawn.p() + step.offset_W};
+}
+
 std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> overlaps,
                                                std::span<const GivingPair> gives, OccurrenceId id) {
   constexpr double kRoom = 60e-6;  // [m] that is left to a part that gives: a choice.
@@ -420,6 +446,53 @@ std::string DescribeDirection(const Vec3& direction_W) {
   return fmt::format("{:.2f} {:.2f} {:.2f}", direction_W.x(), direction_W.y(), direction_W.z());
 }
 
+namespace {
+
+/** Steps that stay together: one of its own, or a part with those by which another lets it pass. */
+using StepBlock = std::vector<SequenceStep>;
+
+std::vector<StepBlock> ListBlocks(std::span<const SequenceStep> steps) {
+  std::vector<StepBlock> blocks;
+  bool is_open = false;  // A part is aside.
+  for (const SequenceStep& step : steps) {
+    if (!is_open) {
+      blocks.emplace_back();
+    }
+    blocks.back().push_back(step);
+    is_open = step.kind == SequenceStep::Kind::kAside ||
+              (is_open && step.kind != SequenceStep::Kind::kReturn);
+  }
+  return blocks;
+}
+
+/** The step of a block by which a part, or a subassembly, goes to its place. */
+const SequenceStep& OwnStepOf(const StepBlock& block) {
+  return block.front().kind == SequenceStep::Kind::kAside ? block[1] : block.front();
+}
+
+/** Checks that what is moved aside is in its place before. */
+Result<void> CheckAside(const Product& product, std::span<const SequenceStep> steps) {
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    const OccurrenceId id = steps[i].occurrence;
+    const bool is_aside = steps[i].kind == SequenceStep::Kind::kAside;
+    const auto comes_before = [&](const SequenceStep& step) {
+      return step.occurrence == id && step.kind == SequenceStep::Kind::kInsert;
+    };
+    if (is_aside &&
+        std::none_of(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(i), comes_before)) {
+      const std::string& moved = product.occurrences[id.index()].path;
+      const std::string& passing = product.occurrences[steps[i + 1].occurrence.index()].path;
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("'{}' cannot come before '{}', which is moved aside to let it pass",
+                              passing, moved),
+                  product.source, fmt::format("name '{}' before it", moved));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<Sequence> Reorder(const product::Product& product, const Sequence& sequence,
                          const std::vector<std::string>& names) {
   Sequence result;
@@ -433,13 +506,18 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
       std::find_if(sequence.steps.rbegin(), sequence.steps.rend(),
                    [](const SequenceStep& step) { return step.kind == SequenceStep::Kind::kPark; });
   result.steps.assign(sequence.steps.begin(), last_park.base());
-  std::vector<SequenceStep> rest(last_park.base(), sequence.steps.end());
-  result.steps.push_back(rest.front());  // The base stays first, named or not.
+  const std::span<const SequenceStep> after(last_park.base(), sequence.steps.end());
+  std::vector<StepBlock> rest = ListBlocks(after);
+  const auto append = [&result](const StepBlock& block) {
+    result.steps.insert(result.steps.end(), block.begin(), block.end());
+  };
+  append(rest.front());  // The base stays first, named or not.
   for (const std::string& name : names) {
-    const auto found = std::find_if(rest.begin(), rest.end(), [&](const SequenceStep& step) {
-      const product::Occurrence& occurrence = product.occurrences[step.occurrence.index()];
+    const auto found = std::find_if(rest.begin(), rest.end(), [&](const StepBlock& block) {
+      const OccurrenceId id = OwnStepOf(block).occurrence;
+      const product::Occurrence& occurrence = product.occurrences[id.index()];
       return occurrence.path == name || occurrence.name == name ||
-             fmt::format("o{}", step.occurrence.value()) == name;
+             fmt::format("o{}", id.value()) == name;
     });
     if (found == rest.begin()) {
       continue;
@@ -448,10 +526,13 @@ Result<Sequence> Reorder(const product::Product& product, const Sequence& sequen
       return Fail(ErrorCode::kNotFound, fmt::format("no part left to order is called '{}'", name),
                   product.source, "hvas inspect lists names and ids");
     }
-    result.steps.push_back(*found);
+    append(*found);
     rest.erase(found);
   }
-  result.steps.insert(result.steps.end(), rest.begin() + 1, rest.end());
+  std::for_each(rest.begin() + 1, rest.end(), append);
+  if (auto checked = CheckAside(product, result.steps); !checked) {
+    return Unexpected(checked.error());
+  }
   return result;
 }
 

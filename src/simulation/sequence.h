@@ -24,6 +24,8 @@ struct SequenceStep {
     kInsert,  ///< The part goes from the table, or from the shelf, into its place.
     kPark,    ///< A finished subassembly goes as one body onto the shelf, out of the way.
     kRemove,  ///< Out of its place again, by the way it came. Not planned: a person's own wish.
+    kAside,   ///< A part goes from its place to one beside it, where the next part can pass it.
+    kReturn,  ///< It goes back from there into its place.
   };
   Kind kind{Kind::kInsert};
   product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.
@@ -32,9 +34,18 @@ struct SequenceStep {
   /** Where the way is not straight: poses X_WB of the part from its place outward, evenly from one
    to the next; the last piece is straight, and goes on. Then extraction_W is the first piece's. */
   std::vector<spatial::Pose> way{};
-  double engage_distance{0};    ///< Distance from the goal until nothing is engaged [m].
-  Vec3 offset_W{Vec3::Zero()};  ///< kPark: from the drawn place to the shelf [m].
+  double engage_distance{0};  ///< Distance from the goal until nothing is engaged [m].
+  /** kPark: from the drawn place to the shelf; kAside: to the place beside it [m]. */
+  Vec3 offset_W{Vec3::Zero()};
 };
+
+/** Whether a step moves a part that is in the product from one place there to another. */
+[[nodiscard]] constexpr bool IsWithinProduct(SequenceStep::Kind kind) {
+  return kind == SequenceStep::Kind::kAside || kind == SequenceStep::Kind::kReturn;
+}
+
+/** Where a step brings its part. @param X_WB_drawn  The part's place as drawn. */
+[[nodiscard]] spatial::Pose GoalOf(const SequenceStep& step, const spatial::Pose& X_WB_drawn);
 
 /** What pairs that block one another are allowed beyond the drawn depth, as far as faces can give
  way [m]: a choice. */
@@ -102,6 +113,9 @@ struct Sequence {
  none: it is put into a fixture, or cannot be brought in. */
 [[nodiscard]] const SequenceStep* FindInsertion(const Sequence& sequence, product::OccurrenceId id);
 
+/** The move by which another part lets this one pass; null where none has to. */
+[[nodiscard]] const SequenceStep* FindAside(const Sequence& sequence, product::OccurrenceId id);
+
 /** What a part is allowed with others: by overlaps as drawn, and by parts that give. One for each
  other part; the spans are those of the arguments. */
 [[nodiscard]] std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> overlaps,
@@ -144,8 +158,10 @@ struct SequenceInput {
 [[nodiscard]] std::string DescribeDirection(const Vec3& direction_W);
 
 /** Re-orders: parts named (or given by path or index "o12") first, in the order given; the others
- follow in the order found. Subassemblies that are put together first stay first.
- Errors: kNotFound for a name that matches nothing that can be moved. */
+ follow in the order found. Subassemblies that are put together first stay first, and the moves by
+ which another part lets one pass stay with it.
+ Errors: kNotFound for a name that matches nothing that can be moved; kInvalid where a part would
+ come before the one that has to be moved aside for it. */
 Result<Sequence> Reorder(const product::Product& product, const Sequence& sequence,
                          const std::vector<std::string>& names);
 

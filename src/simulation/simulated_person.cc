@@ -327,6 +327,8 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       }
       if (task_.takes_out) {
         BeginWithdraw(0, options_.first_push);
+      } else if (task_.starts_on_way) {
+        BeginOnWay(input);
       } else {
         PlanCarry();
       }

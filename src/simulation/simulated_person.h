@@ -19,6 +19,9 @@ struct PersonTask {
   spatial::Pose X_WG_goal;  ///< Grip frame of the part in its place.
   /** The part is in its place: it is drawn out and put down at X_WG_start. */
   bool takes_out{false};
+  /** The part is on its way already, within the product: it goes on along it from where it is, and
+   stays where it sticks. */
+  bool starts_on_way{false};
   Vec3 p_BG{Vec3::Zero()};           ///< The grip in the part.
   Vec3 extraction_W{Vec3::UnitZ()};  ///< Unit; the way out, that of the last piece of `way`.
   double engage_distance{0};         ///< [m] from the goal, where insertion begins.
@@ -184,6 +187,10 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void BeginWithdraw(double travel, double push) noexcept;
   void BeginApproach(const OperatorInput& input) noexcept;
   void BeginInsert() noexcept;
+  /** Begins to move what is on its way already. */
+  void BeginOnWay(const OperatorInput& input) noexcept;
+  /** Lets a part go where it is. */
+  void LeaveThere() noexcept;
   void StepInsert(const OperatorInput& input) noexcept;
   void StepWithdraw(const OperatorInput& input) noexcept;
   /** How fast the part, or the hand that holds it, moves as far as the person can tell [m/s]. */

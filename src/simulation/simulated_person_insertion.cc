@@ -82,7 +82,9 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     return;
   }
   if (phase_time_s_ > CalcPatience()) {
-    if (task_.way != nullptr) {
+    if (task_.starts_on_way) {
+      LeaveThere();
+    } else if (task_.way != nullptr) {
       BeginWithdraw(hand_travel, options_.first_push);  // It has to turn its way out again.
     } else {
       PlanReturn();
@@ -218,9 +220,7 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
     return;
   }
   if (task_.takes_out && is_too_long) {
-    gave_up_ = true;
-    phase_ = Phase::kSettle;
-    phase_time_s_ = 0;
+    LeaveThere();
     return;
   }
   if (is_out || is_too_long) {
@@ -392,6 +392,19 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
   const double drag = kCarefulSpeed * (options_.damping * moving + options_.turn_damping * turning);
   return std::min((input.workspace.scale * push_ + drag) / stiffness,
                   kLeadOnWay + kLeadWhenStuck * stuck_time_s_);
+}
+
+void SimulatedPerson::LeaveThere() noexcept {
+  gave_up_ = true;
+  phase_ = Phase::kSettle;
+  phase_time_s_ = 0;
+}
+
+void SimulatedPerson::BeginOnWay(const OperatorInput& input) noexcept {
+  grip_offset_W_ = input.X_WD * task_.p_BG - X_WH_.p();
+  hold_offset_W_.setZero();
+  BeginInsert();
+  travel_ = task_.engage_distance;
 }
 
 void SimulatedPerson::BeginInsert() noexcept {

@@ -37,6 +37,10 @@ class StepCheck {
         return Move(step, step.members.empty() ? State::kLoose : State::kParked, State::kPlaced);
       case SequenceStep::Kind::kPark:
         return Move(step, State::kPlaced, State::kParked);
+      case SequenceStep::Kind::kAside:
+        return step.members.empty() && Move(step, State::kPlaced, State::kAside);
+      case SequenceStep::Kind::kReturn:
+        return step.members.empty() && Move(step, State::kAside, State::kPlaced);
       case SequenceStep::Kind::kRemove:
         return false;  // A person's own wish, and no plan's.
     }
@@ -44,7 +48,7 @@ class StepCheck {
   }
 
  private:
-  enum class State : std::uint8_t { kLoose, kPlaced, kParked };
+  enum class State : std::uint8_t { kLoose, kPlaced, kParked, kAside };
 
   bool Move(const SequenceStep& step, State from, State to) {
     std::vector<OccurrenceId> parts = step.members;
@@ -61,6 +65,14 @@ class StepCheck {
   std::vector<State> states_;
 };
 
+/** A part that goes aside lets the next one pass, and returns. */
+bool IsLetPastAtOnce(const std::vector<SequenceStep>& steps, std::size_t i) {
+  return steps[i].kind != SequenceStep::Kind::kAside ||
+         (i + 2 < steps.size() && steps[i + 1].kind == SequenceStep::Kind::kInsert &&
+          steps[i + 2].kind == SequenceStep::Kind::kReturn &&
+          steps[i + 2].occurrence == steps[i].occurrence);
+}
+
 }  // namespace
 
 Result<void> CheckSteps(const std::vector<SequenceStep>& steps, std::size_t part_count) {
@@ -69,7 +81,7 @@ Result<void> CheckSteps(const std::vector<SequenceStep>& steps, std::size_t part
   }
   StepCheck check(part_count);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (!check.Follow(steps[i])) {
+    if (!check.Follow(steps[i]) || !IsLetPastAtOnce(steps, i)) {
       return Fail(
           ErrorCode::kInvalid,
           fmt::format("step {} of the order of assembly cannot come where it stands", i + 1));

@@ -19,7 +19,14 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
     const bool has_it = step.occurrence == id || std::find(step.members.begin(), step.members.end(),
                                                            id) != step.members.end();
     const Placement placement = state.parts[step.occurrence.index()].placement;
-    if (step.kind == SequenceStep::Kind::kBase || !has_it ||
+    const bool is_next = i == state.next_step && step.occurrence == id;
+    if (is_next && IsWithinProduct(step.kind)) {
+      const bool goes_aside = step.kind == SequenceStep::Kind::kAside;
+      if (placement == (goes_aside ? Placement::kPlaced : Placement::kParked)) {
+        return step;
+      }
+    }
+    if (IsWithinProduct(step.kind) || step.kind == SequenceStep::Kind::kBase || !has_it ||
         (step.members.empty() && placement != Placement::kLoose)) {
       continue;
     }

@@ -34,6 +34,10 @@ const char* NameOf(SequenceStep::Kind kind) {
       return "park";
     case SequenceStep::Kind::kRemove:
       return "remove";
+    case SequenceStep::Kind::kAside:
+      return "aside";
+    case SequenceStep::Kind::kReturn:
+      return "return";
   }
   return "insert";
 }

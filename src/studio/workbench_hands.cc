@@ -92,7 +92,8 @@ Result<TakenParts> WorkbenchHands::Take(std::size_t hand, OccurrenceId id,
   const SequenceStep step = FindStep(model, state, id, extent);
   const simulation::PartState& part = state.parts[step.occurrence.index()];
   const auto gone = ExplainUnavailable(part.placement, model.product->occurrences[id.index()].name);
-  const bool is_there = step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
+  const bool is_there = step.kind == SequenceStep::Kind::kRemove || IsWithinProduct(step.kind) ||
+                        !step.members.empty();
   if (gone && (!is_there || part.placement == Placement::kHeld)) {
     return Unexpected(*gone);
   }

@@ -107,6 +107,10 @@ Result<std::size_t> FindPartStep(const simulation::Model& model, const std::stri
     return Fail(ErrorCode::kNotFound, "the assembly has no step that inserts this part by itself",
                 part, "name another part of the product");
   }
+  if (simulation::FindAside(model.sequence, *id) != nullptr) {
+    return Fail(ErrorCode::kInvalid, "another part has to be moved aside to let this one pass",
+                part, "name another part of the product");
+  }
   return static_cast<std::size_t>(found - steps.begin());
 }
 

@@ -72,6 +72,9 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
        {"arrival_urad", 1e6 * part.arrival_angle},
        {"pose_error_um", units::ToUm(part.pose_error)},
        {"pose_error_urad", 1e6 * part.pose_error_angle}});
+  if (const auto* aside = simulation::FindAside(model.sequence, part.occurrence)) {
+    json["moved_aside"] = MakeAsideJson(model, *aside);
+  }
   json["allowances"] = nlohmann::ordered_json::array();
   for (const PartAllowance& allowance : part.allowances) {
     json["allowances"].push_back(ToJson(model, allowance));

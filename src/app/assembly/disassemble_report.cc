@@ -24,8 +24,9 @@ using simulation::Removal;
 const Removal* FindRemoval(const DisassemblyPlan& plan, OccurrenceId id) {
   const auto moves = [id](const Removal& removal) {
     const auto& members = removal.step.members;
-    return removal.step.occurrence == id ||
-           std::find(members.begin(), members.end(), id) != members.end();
+    return removal.step.kind == simulation::SequenceStep::Kind::kRemove &&
+           (removal.step.occurrence == id ||
+            std::find(members.begin(), members.end(), id) != members.end());
   };
   const auto found = std::find_if(plan.removals.begin(), plan.removals.end(), moves);
   return found == plan.removals.end() ? nullptr : &*found;

@@ -70,6 +70,10 @@ std::vector<Arrow> ListArrows(const assembly::OrderPlan& plan) {
 
 std::string DescribeReason(const PlanReport& report, const Arrow& arrow) {
   const FreeMove& move = report.plan->rules.moves[arrow.first];
+  if (arrow.obstacle == nullptr && move.aside) {
+    return fmt::format("{} is moved aside for it, which was found without it",
+                       PathOf(*report.model, move.aside->occurrence));
+  }
   if (arrow.obstacle == nullptr) {
     return move.ways.front().step.way.empty() ? "parts give on its way, which was found without it"
                                               : "its way turns, and was found without it";
@@ -148,6 +152,9 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
                                 {"engaged_mm", units::ToMm(step.engage_distance)},
                                 {"turns", !step.way.empty()},
                                 {"ways", move.ways.size()}};
+    if (move.aside) {
+      json["moved_aside"] = MakeAsideJson(*report.model, *move.aside);
+    }
     if (!move.tool.empty()) {
       json["tool"] = move.tool;
       json["in_tool_space"] = MakeIds(simulation::ListInToolSpace(plan.rules, best, i));
@@ -249,6 +256,7 @@ std::string DescribeSearch(const assembly::OrderPlan& plan) {
 struct MoveRow {
   std::string part;  // The leading part, and how many move with it.
   std::string way;
+  std::string aside;          // Says what is moved aside to let it pass; empty: nothing is.
   std::string tool;           // Empty: none.
   std::string turned;         // The side that is then upwards; empty: it is not turned before it.
   std::string in_tool_space;  // Says what stands where the tool turns; empty: nothing does.
@@ -269,6 +277,11 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     row.part = PathOf(model, step.occurrence);
     row.part += step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
     row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
+    if (const auto& aside = plan.rules.moves[m].aside) {
+      row.aside =
+          fmt::format("{} {} aside by {:.1f} mm", PathOf(model, aside->occurrence),
+                      aside->way.empty() ? "moved" : "turned", units::ToMm(aside->engage_distance));
+    }
     row.tool = plan.rules.moves[m].tool;
     row.turned = DescribeTurn(plan, i);
     const auto in_tool_space = simulation::ListInToolSpace(plan.rules, best, i);
@@ -327,7 +340,12 @@ std::string MakeOrderTable(const PlanReport& report) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td>"
         "<td class=\"l\">{}</td><td class=\"l\">{}</td></tr>\n",
-        ++number, Escape(row.part), row.way, tool, Escape(row.holds), before);
+        ++number,
+        Escape(row.part) +
+            (row.aside.empty()
+                 ? ""
+                 : fmt::format("<br><span class=\"soft\">with {}</span>", Escape(row.aside))),
+        row.way, tool, Escape(row.holds), before);
   }
   return html + "</table></div>\n";
 }
@@ -430,6 +448,9 @@ void PrintPlanTable(const PlanReport& report) {
           fmt::format("before {}: {}", PathOfLater(report, first), DescribeReason(report, first));
       below +=
           row.arrows.size() > 1 ? fmt::format("; and before {} more", row.arrows.size() - 1) : "";
+    }
+    if (!row.aside.empty()) {
+      below = "with " + row.aside + (below.empty() ? "" : "; " + below);
     }
     if (!row.holds.empty()) {
       below += (below.empty() ? "hold " : "; hold ") + row.holds;

@@ -109,6 +109,15 @@ const std::string& PathOf(const Model& model, product::OccurrenceId id) {
   return id.is_valid() ? model.product->occurrences[id.index()].path : kNone;
 }
 
+nlohmann::ordered_json MakeAsideJson(const Model& model, const simulation::SequenceStep& aside) {
+  const Vec3 way_W = Vec3::Zero() - aside.extraction_W;  // A zero has no sign for people.
+  return {{"id", aside.occurrence.value()},
+          {"name", PathOf(model, aside.occurrence)},
+          {"direction", {way_W.x(), way_W.y(), way_W.z()}},
+          {"distance_mm", units::ToMm(aside.engage_distance)},
+          {"turns", !aside.way.empty()}};
+}
+
 nlohmann::ordered_json MakeHoldJson(const simulation::PartResult& part) {
   return {{"hand", part.hand},
           {"reason", part.reason},

@@ -31,6 +31,11 @@ struct SessionReport {
 [[nodiscard]] nlohmann::ordered_json MakeRunJson(const simulation::Model& model,
                                                  const SessionReport& report);
 
+/** The part that is moved aside to let another one pass, which way and how far.
+ @param aside  As FindAside() gives it. */
+[[nodiscard]] nlohmann::ordered_json MakeAsideJson(const simulation::Model& model,
+                                                   const simulation::SequenceStep& aside);
+
 /** How a part fared in the hands: reason, time and forces. */
 [[nodiscard]] nlohmann::ordered_json MakeHoldJson(const simulation::PartResult& part);
 

@@ -293,15 +293,17 @@ TEST(CommandJson, RefusesWhatPointsOutsideTheModel) {
 }
 
 TEST(CommandJson, BringsAnOrderOfAssemblyBack) {
-  std::vector<SequenceStep> steps(3);
+  std::vector<SequenceStep> steps(6);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     steps[i].kind = static_cast<SequenceStep::Kind>(i);
     steps[i].occurrence = product::OccurrenceId(i);
   }
-  const auto back = ParseSteps(MakeStepsJson(steps), 3);
+  const auto back = ParseSteps(MakeStepsJson(steps), 6);
   ASSERT_TRUE(back.has_value());
-  ASSERT_EQ(back->size(), 3u);
+  ASSERT_EQ(back->size(), 6u);
   EXPECT_EQ((*back)[2].kind, SequenceStep::Kind::kPark);
+  EXPECT_EQ((*back)[4].kind, SequenceStep::Kind::kAside);
+  EXPECT_EQ((*back)[5].kind, SequenceStep::Kind::kReturn);
   EXPECT_FALSE(ParseSteps(MakeStepsJson(steps), 2).has_value());
 }
 

@@ -9,32 +9,17 @@
 
 #include "planning/test/pairs.h"
 #include "simulation/screw_mates.h"
+#include "simulation/test/cell_parts.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::simulation {
 namespace {
 
 using planning::testing::CellSolid;
+using testing::MakeSource;
 using testing::OccurrenceId;
 using testing::Pose;
 using testing::Product;
-
-/** The solid with the triangles of each face together, as parts have them. */
-contact::ShapeSource MakeSource(const CellSolid& solid) {
-  const contact::ShapeSource made = solid.Make();
-  contact::ShapeSource sorted = made;
-  sorted.triangles.clear();
-  sorted.triangle_face.clear();
-  for (std::uint32_t face = 0; face < made.faces.size(); ++face) {
-    for (std::size_t t = 0; t < made.triangles.size(); ++t) {
-      if (made.triangle_face[t] == face) {
-        sorted.triangles.push_back(made.triangles[t]);
-        sorted.triangle_face.push_back(face);
-      }
-    }
-  }
-  return sorted;
-}
 
 /** A key whose bit lies across the slot of a plate, below it: it has to turn by a quarter. */
 Product KeyInPlate() {

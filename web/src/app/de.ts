@@ -171,6 +171,8 @@ export const de: Record<MessageKey, string> = {
   "steps.insert": "{name} einsetzen",
   "steps.insertMany": "{name} und {n} weitere einsetzen",
   "steps.park": "{name} beiseitelegen",
+  "steps.aside": "{name} beiseiteschieben",
+  "steps.return": "{name} zurückschieben",
   "steps.doneAll": "Alle Schritte sind getan.",
   "steps.pending.one": "{n} weiteres Teil wird vorbereitet. Sein Schritt folgt.",
   "steps.pending.other": "{n} weitere Teile werden vorbereitet. Ihre Schritte folgen.",

@@ -171,6 +171,8 @@ export const en = {
   "steps.insert": "Insert {name}",
   "steps.insertMany": "Insert {name} and {n} more",
   "steps.park": "Put {name} aside",
+  "steps.aside": "Move {name} aside",
+  "steps.return": "Move {name} back",
   "steps.doneAll": "All steps are done.",
   "steps.pending.one": "{n} more part is being prepared. Its step follows.",
   "steps.pending.other": "{n} more parts are being prepared. Their steps follow.",
