@@ -1,6 +1,7 @@
 #include "assembly/plan_order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -102,40 +103,13 @@ Error ExplainStuck(const Model& model, const OrderRules& rules,
           "leave out one of these wishes"};
 }
 
-/** The side that is upwards when each move comes: as drawn where that may be, else the one of the
- possible ones on which the base stands best. */
-std::vector<Vec3> ChooseUpSides(const Model& model, const OrderRules& rules,
-                                const simulation::FoundOrder& order) {
-  const OccurrenceId base = simulation::FindBase(model.sequence);
-  std::vector<Vec3> chosen;
-  std::vector<Vec3> last;  // The sides for which the base was last looked at.
-  for (const std::vector<Vec3>& sides : simulation::ListUpSides(rules, order)) {
-    if (std::find(sides.begin(), sides.end(), Vec3::UnitZ()) != sides.end()) {
-      chosen.emplace_back(Vec3::UnitZ());
-      last.clear();
-      continue;
-    }
-    if (sides == last) {
-      chosen.push_back(chosen.back());
-      continue;
-    }
-    last = sides;
-    chosen.push_back(
-        *std::max_element(sides.begin(), sides.end(), [&](const Vec3& a, const Vec3& b) {
-          return simulation::CalcStandingMargin(model, base, Vec3(-a)) <
-                 simulation::CalcStandingMargin(model, base, Vec3(-b));
-        }));
-  }
-  return chosen;
-}
-
 /** What has to be held after each move of an order; none after a stop, or where it is not known. */
 std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::StateStatics& states,
                                         const OrderRules& rules,
                                         const simulation::FoundOrder& order,
                                         const std::stop_token& stop) {
   OrderStatics statics;
-  statics.up_W = ChooseUpSides(model, rules, order);
+  statics.up_W = simulation::ListUpSides(rules, order);
   std::vector<bool> is_in_place(model.bodies.size(), false);
   is_in_place[simulation::FindBase(model.sequence).index()] = true;
   // A state of 500 parts that falls takes a second, one of 40 some milliseconds.
@@ -162,9 +136,12 @@ std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::St
   return statics;
 }
 
-/** Finds the statics of the orders, and puts those of equal cost in which less has to be held
- * first.
- */
+// Orders whose costs differ by less than this are as good as one another: a tenth of one change of
+// direction, a choice.
+constexpr double kAlikeCost = 0.1;
+
+/** Finds the statics of the orders, and puts those first of about equal cost in which less has to be
+ held. */
 void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan) {
   const simulation::StateStatics states(model);
   std::vector<simulation::FoundOrder>& orders = plan->search.orders;
@@ -188,8 +165,8 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
   std::vector<std::size_t> places(plan->statics.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
   std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(orders[a].cost, plan->statics[a].held_states) <
-           std::pair(orders[b].cost, plan->statics[b].held_states);
+    return std::pair(std::floor(orders[a].cost / kAlikeCost), plan->statics[a].held_states) <
+           std::pair(std::floor(orders[b].cost / kAlikeCost), plan->statics[b].held_states);
   });
   std::vector<simulation::FoundOrder> sorted;
   std::vector<OrderStatics> statics;

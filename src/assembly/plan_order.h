@@ -42,7 +42,7 @@ struct OrderStatics {
 /** Orders of assembly of a model. */
 struct OrderPlan {
   simulation::OrderRules rules;
-  simulation::OrderSearch search;  ///< Orders of equal cost stand by how little has to be held.
+  simulation::OrderSearch search;  ///< Orders of about equal cost stand by how little is held.
   /** Statics of the first of search.orders: as many as 300 moves allow, one at least. */
   std::vector<OrderStatics> statics;
   /** How far a table with the base on it, as the fixture holds it first in the best order, may be

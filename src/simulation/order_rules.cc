@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "simulation/fastener_tool.h"
+#include "simulation/state_statics.h"
 #include "simulation/tool_space.h"
 
 namespace hvas::simulation {
@@ -28,10 +29,13 @@ class RuleFinder {
   OrderRules Find() {
     SplitSteps();
     ShowAll();
+    RankUpSides();
+    EffortFinder efforts(model_, &extraction_, move_of_);
     for (std::size_t m = 0; m < rules_.moves.size(); ++m) {
       FindWays(m);
       FindHolders(m);
       FindToolSpace(m);
+      FindEffort(m, &efforts);
       if (options_.progress) {
         options_.progress(static_cast<double>(m + 1) / static_cast<double>(rules_.moves.size()));
       }
@@ -65,7 +69,8 @@ class RuleFinder {
       for (const OccurrenceId part : move.parts) {
         move_of_[part] = rules_.moves.size();
       }
-      move.ways.push_back({*step, {}, {}});
+      units_.push_back(move.parts);
+      move.ways.push_back({*step, {}, {}, {}});
       move.aside = std::exchange(aside, std::nullopt);
       rules_.moves.push_back(std::move(move));
     }
@@ -197,6 +202,29 @@ class RuleFinder {
         move.moves_in_tool_space.end());
   }
 
+  void FindEffort(std::size_t m, EffortFinder* efforts) {
+    FreeMove& move = rules_.moves[m];
+    move.weight = efforts->CalcWeight(move.parts);
+    move.mods = efforts->CalcMods(move.parts, !move.tool.empty());
+    for (OrderedWay& way : move.ways) {
+      way.effort = efforts->Find(units_, m, way.step.extraction_W);
+    }
+  }
+
+  void RankUpSides() {
+    std::array<int, kUpSides>& sides = rules_.up_sides;
+    std::array<double, kUpSides> margins{};
+    for (const int side : sides) {
+      margins[static_cast<std::size_t>(side)] =
+          CalcStandingMargin(model_, FindBase(model_.sequence), Vec3(-UpSideAt(side)));
+    }
+    // The first one is as drawn.
+    std::sort(sides.begin() + 1, sides.end());
+    std::stable_sort(sides.begin() + 1, sides.end(), [&margins](int a, int b) {
+      return margins[static_cast<std::size_t>(a)] > margins[static_cast<std::size_t>(b)];
+    });
+  }
+
   const Model& model_;
   const OrderRuleOptions& options_;
   contact::Scene scene_;
@@ -204,10 +232,17 @@ class RuleFinder {
   Extraction extraction_;
   std::vector<FastenerTool> tools_;  // By occurrence.
   OrderRules rules_;
+  std::vector<Unit> units_;  // Parts of the moves.
   std::map<OccurrenceId, std::size_t> move_of_;
 };
 
 }  // namespace
+
+Vec3 UpSideAt(int side) {
+  Vec3 up = Vec3::Zero();
+  up[side / 2] = side % 2 == 0 ? 1 : -1;
+  return up;
+}
 
 OrderRules FindOrderRules(const Model& model, const OrderRuleOptions& options) {
   return RuleFinder(model, options).Find();

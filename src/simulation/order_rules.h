@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "simulation/extraction.h"
 #include "simulation/model.h"
+#include "simulation/order_effort.h"
 
 namespace hvas::simulation {
 
@@ -17,6 +19,7 @@ struct OrderedWay {
   SequenceStep step;                ///< The move by this way.
   std::vector<Obstacle> obstacles;  ///< One of each part that stands in it.
   std::vector<std::size_t> moves;   ///< The moves that these parts belong to; sorted.
+  WayEffort effort;                 ///< What it asks of the hand.
 };
 
 /** A move of the order of assembly, and the ways by which it may go. */
@@ -37,13 +40,24 @@ struct FreeMove {
   std::vector<std::size_t> moves_in_tool_space;  ///< The moves that they belong to; sorted.
   std::vector<std::size_t> neighbours;           ///< Moves whose parts hold this one; sorted.
   bool is_held_by_base{false};                   ///< The base, or a fixture, holds it.
+  double weight{0};                              ///< Weight of its parts [N].
+  int mods{0};  ///< MOD of the hand in every order (EffortFinder::CalcMods).
 };
+
+/** A side of the product that may be upwards: an axis of W, the positive and the negative one of x,
+ then of y, then of z. */
+inline constexpr int kUpSides = 6;
+
+[[nodiscard]] Vec3 UpSideAt(int side);
 
 /** What of an order of assembly may change: a move may come when nothing stands in one of its ways.
  Wilson and Latombe (Artificial Intelligence 71(2), 1994) call such rules AND/OR precedence. */
 struct OrderRules {
   std::vector<SequenceStep> first;  ///< What is put together by itself, and the base.
   std::vector<FreeMove> moves;      ///< Moves in the planned order.
+  /** Sides that may be upwards, the one to choose before others first: as drawn, then that on which
+   the base stands best. */
+  std::array<int, kUpSides> up_sides{4, 0, 1, 2, 3, 5};
 };
 
 struct OrderRuleOptions {

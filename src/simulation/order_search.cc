@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
+#include <string_view>
 #include <tuple>
 
 #include "simulation/neighbours.h"
@@ -19,6 +21,10 @@ using product::OccurrenceId;
 // A choice.
 constexpr double kBelow = -0.1;
 constexpr double kSameWay = 0.985;  // Cosine: 10 degrees, which a hand does not notice. A choice.
+// What a hand pushes or carries at most; the rest is for a press, a mallet or a hoist [N]. A
+// choice.
+constexpr double kMostHandForce = 100;
+constexpr double kSameCost = 1e-9;     // Sums in another order are rounded otherwise.
 constexpr std::size_t kWidest = 4096;  // Orders at once: some 100 MB for a product of 500 parts.
 constexpr std::size_t kWidening = 4;   // A round is so much wider than the last: a choice.
 
@@ -48,45 +54,65 @@ class MoveSet {
   std::vector<std::uint64_t> words_;
 };
 
-/** The six sides that may be upwards. */
-constexpr int kSides = 6;
-constexpr unsigned kAllSides = (1U << kSides) - 1;  // One bit a side.
-
-Vec3 SideAt(int side) {
-  Vec3 up = Vec3::Zero();
-  up[side / 2] = side % 2 == 0 ? 1 : -1;
-  return up;
-}
+constexpr unsigned kAllSides = (1U << kUpSides) - 1;  // One bit a side.
 
 /** The sides that may be upwards when a part comes in by a way, one bit each. */
 unsigned ListSides(const Vec3& extraction_W) {
   unsigned sides = 0;
-  for (int side = 0; side < kSides; ++side) {
-    sides |= SideAt(side).dot(extraction_W) > kBelow ? 1U << static_cast<unsigned>(side) : 0U;
+  for (int side = 0; side < kUpSides; ++side) {
+    sides |= UpSideAt(side).dot(extraction_W) > kBelow ? 1U << static_cast<unsigned>(side) : 0U;
   }
   return sides;
 }
 
+bool HasSide(unsigned sides, int side) {
+  return (sides >> static_cast<unsigned>(side) & 1U) != 0;
+}
+
+/** The first side that may be upwards. @pre One may. */
+int ChooseSide(const OrderRules& rules, unsigned sides) {
+  return *std::find_if(rules.up_sides.begin(), rules.up_sides.end(),
+                       [sides](int side) { return HasSide(sides, side); });
+}
+
+/** A move with what is there when it comes. */
+struct MoveInOrder {
+  const FreeMove& move;
+  const OrderedWay& way;
+  bool is_loose;
+  bool is_cramped;
+  Effort effort;
+
+  [[nodiscard]] double CalcForce(const Vec3& up_W) const {
+    return std::min(kMostHandForce, effort.against) +
+           std::min(kMostHandForce,
+                    CalcHandForce(effort.press, move.weight, way.step.extraction_W.dot(up_W)));
+  }
+};
+
 /** Counts what makes an order worse, move by move: from its beginning or from its end. */
 class OrderCounter {
  public:
-  /** @param tool  The tool of the move; it outlives this object. Empty: none. */
-  void Add(const Vec3& extraction_W, std::string_view tool, bool is_loose, bool is_cramped) {
-    const unsigned own = ListSides(extraction_W);
-    counts_.turns += (sides_ & own) == 0 ? 1 : 0;
-    sides_ = (sides_ & own) == 0 ? own : sides_ & own;
-    counts_.direction_changes +=
-        last_W_ != Vec3::Zero() && extraction_W.dot(last_W_) < kSameWay ? 1 : 0;
+  /** @param rules  They outlive this object. */
+  explicit OrderCounter(const OrderRules& rules) : rules_(&rules) {}
+
+  void Add(const MoveInOrder& added) {
+    TurnFor(added);
+    const Vec3& extraction_W = added.way.step.extraction_W;
+    const bool is_other_way = last_W_ != Vec3::Zero() && extraction_W.dot(last_W_) < kSameWay;
+    counts_.direction_changes += is_other_way ? 1 : 0;
+    counts_.mods += is_other_way ? kOtherWayMods : 0;
     last_W_ = extraction_W;
-    counts_.tool_changes += !tool.empty() && !tool_.empty() && tool != tool_ ? 1 : 0;
-    tool_ = tool.empty() ? tool_ : tool;
-    counts_.loose += is_loose ? 1 : 0;
-    counts_.cramped += is_cramped ? 1 : 0;
+    TakeTool(added.move.tool);
+    counts_.loose += added.is_loose ? 1 : 0;
+    counts_.cramped += added.is_cramped ? 1 : 0;
+    counts_.reach += added.effort.reach;
+    counts_.mods += added.move.mods + CalcReachMods(added.effort.reach) +
+                    (added.effort.press > 0 ? kPressMods : 0) +
+                    (added.is_loose || added.effort.against > 0 ? kHoldMods : 0);
   }
 
   [[nodiscard]] const OrderCounts& counts() const { return counts_; }
-
-  [[nodiscard]] const Vec3& last_W() const { return last_W_; }
 
   /** What later moves count by, but for the counts so far. */
   [[nodiscard]] auto Key() const {
@@ -94,11 +120,76 @@ class OrderCounter {
   }
 
  private:
+  /** Turns the product where the part would come in from below, and counts the force. */
+  void TurnFor(const MoveInOrder& added) {
+    const unsigned own = ListSides(added.way.step.extraction_W);
+    if ((sides_ & own) == 0) {
+      ++counts_.turns;
+      counts_.mods += kTurnMods;
+      sides_ = kAllSides;
+      force_before_ = counts_.force;
+      forces_ = {};
+    }
+    sides_ &= own;
+    for (int side = 0; side < kUpSides; ++side) {
+      if (HasSide(sides_, side)) {
+        forces_[static_cast<std::size_t>(side)] += added.CalcForce(UpSideAt(side));
+      }
+    }
+    counts_.force = force_before_ + forces_[static_cast<std::size_t>(ChooseSide(*rules_, sides_))];
+  }
+
+  void TakeTool(std::string_view tool) {
+    if (tool.empty() || tool == tool_) {
+      return;
+    }
+    counts_.tool_changes += tool_.empty() ? 0 : 1;
+    counts_.mods += tool_.empty() ? kToolGetMods : kToolChangeMods;
+    tool_ = tool;
+  }
+
+  const OrderRules* rules_;
   unsigned sides_{kAllSides};  // That may be upwards since the product was last turned, a bit each.
   Vec3 last_W_{Vec3::Zero()};  // The way of the last move; zero: none.
   std::string_view tool_;      // The last one that was needed; empty: none.
   OrderCounts counts_;
+  double force_before_{0};                 // Until the product was last turned [N].
+  std::array<double, kUpSides> forces_{};  // Since then, for each side upwards [N].
 };
+
+/** Counts an order from its beginning.
+ @param visit  Called with the counts after each move. */
+template <typename Visit>
+OrderCounts Walk(const OrderRules& rules, const FoundOrder& order, const Visit& visit) {
+  OrderCounter counter(rules);
+  std::vector<bool> is_there(rules.moves.size(), false);
+  const auto has_come = [&is_there](std::size_t move) { return is_there[move]; };
+  for (std::size_t i = 0; i < order.moves.size(); ++i) {
+    const FreeMove& move = rules.moves[order.moves[i]];
+    const OrderedWay& way = move.ways[order.ways[i]];
+    const bool is_held = move.is_held_by_base ||
+                         std::any_of(move.neighbours.begin(), move.neighbours.end(), has_come);
+    const bool is_cramped =
+        std::any_of(move.moves_in_tool_space.begin(), move.moves_in_tool_space.end(), has_come);
+    const MoveInOrder added{move, way, !is_held, is_cramped, CalcEffort(way.effort, has_come)};
+    counter.Add(added);
+    is_there[order.moves[i]] = true;
+    visit(added, counter.counts());
+  }
+  return counter.counts();
+}
+
+/** What an order costs, by what it costs for. */
+std::array<double, 8> ListCosts(const OrderCounts& counts, const OrderWeights& weights) {
+  return {weights.turn * counts.turns,
+          weights.direction_change * counts.direction_changes,
+          weights.tool_change * counts.tool_changes,
+          weights.loose * counts.loose,
+          weights.cramped * counts.cramped,
+          weights.reach * counts.reach,
+          weights.force * counts.force,
+          weights.hand_time * counts.hand_time()};
+}
 
 /** A product that is partly taken apart. */
 struct State {
@@ -202,24 +293,25 @@ class BeamSearch {
     return order;
   }
 
-  /** The first way of a move with nothing in it, of those that go on in the last direction if there
-   is one; none where all are blocked. */
-  [[nodiscard]] std::optional<std::size_t> FindWay(const State& state, std::size_t move) const {
-    if (state.present.Meets(wanted_[move])) {
-      return std::nullopt;
+  /** Adds a move as the next one, by each of its free ways. */
+  void AddCandidates(const State& state, std::size_t index, std::size_t m, bool is_carrying,
+                     std::vector<Candidate>* candidates) const {
+    if (state.present.Meets(wanted_[m])) {
+      return;
     }
-    std::optional<std::size_t> first;
-    const std::vector<OrderedWay>& ways = rules_.moves[move].ways;
-    for (std::size_t w = 0; w < ways.size(); ++w) {
-      if (state.present.Meets(obstacles_[move][w])) {
+    const auto is_there = [&state](std::size_t other) { return state.present.Has(other); };
+    const FreeMove& move = rules_.moves[m];
+    const bool is_cramped = state.present.Meets(in_tool_space_[m]);
+    for (std::size_t w = 0; w < move.ways.size(); ++w) {
+      if (state.present.Meets(obstacles_[m][w])) {
         continue;
       }
-      if (ways[w].step.extraction_W.dot(state.counter.last_W()) > kSameWay) {
-        return w;
-      }
-      first = first ? first : w;
+      const OrderedWay& way = move.ways[w];
+      OrderCounter counter = state.counter;
+      counter.Add({move, way, is_carrying, is_cramped, CalcEffort(way.effort, is_there)});
+      const double cost = CalcCost(counter.counts(), options_.weights);
+      candidates->push_back({index, m, w, counter, cost});
     }
-    return first;
   }
 
   /** Moves without which others would hang in the air. */
@@ -240,17 +332,9 @@ class BeamSearch {
         continue;
       }
       ++tries_;
-      const std::optional<std::size_t> way = FindWay(state, m);
-      if (!way) {
-        continue;
-      }
       const bool is_carrying =
           std::binary_search(carrying.begin(), carrying.end(), OccurrenceId(m + 1));
-      OrderCounter counter = state.counter;
-      counter.Add(rules_.moves[m].ways[*way].step.extraction_W, rules_.moves[m].tool, is_carrying,
-                  state.present.Meets(in_tool_space_[m]));
-      const double cost = CalcCost(counter.counts(), options_.weights);
-      candidates->push_back({index, m, *way, counter, cost});
+      AddCandidates(state, index, m, is_carrying, candidates);
     }
   }
 
@@ -265,7 +349,7 @@ class BeamSearch {
   /** One round of the search. @returns false where it found no order, or was ended. */
   bool Run(std::size_t width, OrderSearch* search) {
     const std::size_t count = rules_.moves.size();
-    State start{MoveSet(count), {}, {}};
+    State start{MoveSet(count), {}, OrderCounter(rules_)};
     for (std::size_t m = 0; m < count; ++m) {
       start.present.Set(m);
     }
@@ -331,17 +415,15 @@ class BeamSearch {
 
   [[nodiscard]] std::vector<FoundOrder> TakeBest() {
     std::vector<FoundOrder> best;
-    std::vector<OrderCounts> counts;
+    std::vector<std::array<double, 8>> kept;
     for (auto& [key, order] : found_) {
-      const OrderCounts& c = order.counts;
-      const bool is_beaten =
-          std::any_of(counts.begin(), counts.end(), [&c](const OrderCounts& other) {
-            return other.turns <= c.turns && other.direction_changes <= c.direction_changes &&
-                   other.tool_changes <= c.tool_changes && other.loose <= c.loose &&
-                   other.cramped <= c.cramped;
-          });
+      const auto costs = ListCosts(order.counts, options_.weights);
+      const bool is_beaten = std::any_of(kept.begin(), kept.end(), [&costs](const auto& other) {
+        return std::equal(other.begin(), other.end(), costs.begin(),
+                          [](double a, double b) { return a <= b + kSameCost; });
+      });
       if (options_.gives_front ? !is_beaten : best.size() < options_.most_orders) {
-        counts.push_back(c);
+        kept.push_back(costs);
         best.push_back(std::move(order));
       }
     }
@@ -361,9 +443,8 @@ class BeamSearch {
 }  // namespace
 
 double CalcCost(const OrderCounts& counts, const OrderWeights& weights) {
-  return weights.turn * counts.turns + weights.direction_change * counts.direction_changes +
-         weights.tool_change * counts.tool_changes + weights.loose * counts.loose +
-         weights.cramped * counts.cramped;
+  const auto costs = ListCosts(counts, weights);
+  return std::accumulate(costs.begin(), costs.end(), 0.0);
 }
 
 OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& options) {
@@ -371,35 +452,16 @@ OrderSearch FindOrders(const OrderRules& rules, const OrderSearchOptions& option
 }
 
 OrderCounts CountOrder(const OrderRules& rules, const FoundOrder& order) {
-  OrderCounter counter;
-  std::vector<bool> is_there(rules.moves.size(), false);
-  for (std::size_t i = 0; i < order.moves.size(); ++i) {
-    const std::size_t m = order.moves[i];
-    const FreeMove& move = rules.moves[m];
-    const bool is_held =
-        move.is_held_by_base || std::any_of(move.neighbours.begin(), move.neighbours.end(),
-                                            [&](std::size_t other) { return is_there[other]; });
-    const bool is_cramped =
-        std::any_of(move.moves_in_tool_space.begin(), move.moves_in_tool_space.end(),
-                    [&](std::size_t other) { return is_there[other]; });
-    counter.Add(move.ways[order.ways[i]].step.extraction_W, move.tool, !is_held, is_cramped);
-    is_there[m] = true;
-  }
-  return counter.counts();
+  return Walk(rules, order, [](const MoveInOrder&, const OrderCounts&) {});
 }
 
-std::vector<std::vector<Vec3>> ListUpSides(const OrderRules& rules, const FoundOrder& order) {
-  std::vector<std::vector<Vec3>> ups(order.moves.size());
+std::vector<Vec3> ListUpSides(const OrderRules& rules, const FoundOrder& order) {
+  std::vector<Vec3> ups(order.moves.size());
   std::size_t first = 0;
   unsigned sides = kAllSides;
   const auto close = [&](std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      for (int side = 0; side < kSides; ++side) {
-        if ((sides >> static_cast<unsigned>(side) & 1U) != 0) {
-          ups[i].push_back(SideAt(side));
-        }
-      }
-    }
+    std::fill(ups.begin() + static_cast<std::ptrdiff_t>(first),
+              ups.begin() + static_cast<std::ptrdiff_t>(end), UpSideAt(ChooseSide(rules, sides)));
     first = end;
   };
   for (std::size_t i = 0; i < order.moves.size(); ++i) {
@@ -413,6 +475,18 @@ std::vector<std::vector<Vec3>> ListUpSides(const OrderRules& rules, const FoundO
   }
   close(order.moves.size());
   return ups;
+}
+
+std::vector<HandWork> ListHandWork(const OrderRules& rules, const FoundOrder& order) {
+  const std::vector<Vec3> ups = ListUpSides(rules, order);
+  std::vector<HandWork> work;
+  int mods = 0;
+  Walk(rules, order, [&](const MoveInOrder& added, const OrderCounts& counts) {
+    work.push_back({added.effort.reach, added.CalcForce(ups[work.size()]), added.effort.press,
+                    counts.mods - mods});
+    mods = counts.mods;
+  });
+  return work;
 }
 
 std::vector<OccurrenceId> ListInToolSpace(const OrderRules& rules, const FoundOrder& order,

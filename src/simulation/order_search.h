@@ -10,11 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/hand_time.h"
 #include "simulation/order_rules.h"
 
 namespace hvas::simulation {
 
-/** What makes an order worse: how often each happens in it. */
+/** What makes an order worse: how often each happens in it, and what it asks of the hand. */
 struct OrderCounts {
   int turns{0};              ///< The product is turned, because a part would come in from below.
   int direction_changes{0};  ///< A part comes from another direction than the one before it.
@@ -22,18 +23,30 @@ struct OrderCounts {
   int loose{0};              ///< Nothing holds a part when it comes, and it has to be held.
   int cramped{0};  ///< A fastener comes when parts stand where its tool turns, of those that move.
 
+  double reach{0};  ///< How far the hand goes in among what is there, of all moves [m].
+  double force{0};  ///< Force of the hands against fits and weight, of all moves [N].
+  int mods{0};      ///< Time of the hand (hand_time.h) [MOD].
+
   bool operator==(const OrderCounts&) const = default;
+
+  [[nodiscard]] double hand_time() const { return kModSeconds * mods; }  ///< [s]
 };
 
 /** What each of them costs, in units of one change of direction. Choices: turning a product takes
  several times as long as reaching for a part from another side (MODAPTS has 0.129 s a MOD: 17 MOD
- to turn by hand, 5 to reach elsewhere), and a hand that holds a part is not free for the next. */
+ to turn it over by hand, 5 to go to another side), and a hand that holds a part is not free for the
+ next. A hand that goes in by 0.1 m, or a force of 50 N, costs as much as another side. The time of
+ the hand is told, but costs nothing, as what it depends on is counted already; with all others at
+ 0 it is what orders are compared by. */
 struct OrderWeights {
   double turn{4};
   double direction_change{1};
   double tool_change{2};
   double loose{5};
-  double cramped{10};  ///< A fastener that its usual tool does not reach may not go in at all.
+  double cramped{10};   ///< A fastener that its usual tool does not reach may not go in at all.
+  double reach{10};     ///< Each metre.
+  double force{0.02};   ///< Each newton.
+  double hand_time{0};  ///< Each second.
 };
 
 [[nodiscard]] double CalcCost(const OrderCounts& counts, const OrderWeights& weights);
@@ -83,11 +96,21 @@ struct OrderSearch {
 /** What an order counts. */
 [[nodiscard]] OrderCounts CountOrder(const OrderRules& rules, const FoundOrder& order);
 
-/** The sides of the product that may be upwards when each move of an order comes: unit vectors
- along the axes. They change as seldom as can be, by OrderCounts::turns times; the fixture may hold
- the product with any of the first ones upwards. */
-[[nodiscard]] std::vector<std::vector<Vec3>> ListUpSides(const OrderRules& rules,
-                                                         const FoundOrder& order);
+/** The side of the product that is upwards when each move of an order comes: unit vectors along the
+ axes, which change as seldom as can be, by OrderCounts::turns times. Of the sides from which no
+ part comes in from below meanwhile it is the first one of OrderRules::up_sides. */
+[[nodiscard]] std::vector<Vec3> ListUpSides(const OrderRules& rules, const FoundOrder& order);
+
+/** What a move of an order asks of the hand. */
+struct HandWork {
+  double reach{0};  ///< [m]
+  double force{0};  ///< Force of both hands, each 100 N at most: more is for a press [N].
+  double press{0};  ///< What the fits need [N].
+  int mods{0};      ///< Its time, with a turn of the product or another tool before it [MOD].
+};
+
+/** What each move of an order asks of the hand; their sums are those of OrderCounts. */
+[[nodiscard]] std::vector<HandWork> ListHandWork(const OrderRules& rules, const FoundOrder& order);
 
 /** What stands in the space of a fastener's tool when it comes at a place in an order: parts of
  moves before it, and those that never move. */

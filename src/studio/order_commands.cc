@@ -56,7 +56,7 @@ Json MakeOrderJson(const DescribedOrder& described) {
          {"holds", has_holds ? ToJson(*described.statics->holds[place]) : Json(nullptr)}});
   }
   const FoundOrder* order = described.order;
-  const auto count = [order](int simulation::OrderCounts::*which) {
+  const auto count = [order](auto simulation::OrderCounts::*which) {
     return order != nullptr ? Json(order->counts.*which) : Json(nullptr);
   };
   using simulation::OrderCounts;
@@ -67,7 +67,10 @@ Json MakeOrderJson(const DescribedOrder& described) {
           {"direction_changes", count(&OrderCounts::direction_changes)},
           {"tool_changes", count(&OrderCounts::tool_changes)},
           {"loose", count(&OrderCounts::loose)},
-          {"cramped", count(&OrderCounts::cramped)}};
+          {"cramped", count(&OrderCounts::cramped)},
+          {"reach_m", count(&OrderCounts::reach)},
+          {"force_n", count(&OrderCounts::force)},
+          {"hand_time_s", order != nullptr ? Json(order->counts.hand_time()) : Json(nullptr)}};
 }
 
 Result<Json> Describe(const Result<OrderPlan>& plan) {

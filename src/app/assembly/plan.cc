@@ -123,6 +123,20 @@ void AddPlan(CLI::App* app, int* status) {
                    "Cost of a fastener that comes when parts stand where its tool turns")
       ->capture_default_str();
   command
+      ->add_option("--reach-cost", weights.reach,
+                   "Cost of each metre by which the hand goes in among the parts that are there")
+      ->capture_default_str();
+  command
+      ->add_option("--force-cost", weights.force,
+                   "Cost of each newton that the hand needs against a fit or a weight")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--hand-time-cost", weights.hand_time,
+          "Cost of each second that the hand takes, estimated by MODAPTS; it counts turns, "
+          "changes, reach and force once more")
+      ->capture_default_str();
+  command
       ->add_option("--orders", options->plan.most_orders, "How many of the best orders are given")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -98,7 +98,10 @@ nlohmann::ordered_json ToJson(const OrderCounts& counts) {
           {"direction_changes", counts.direction_changes},
           {"tool_changes", counts.tool_changes},
           {"loose", counts.loose},
-          {"cramped", counts.cramped}};
+          {"cramped", counts.cramped},
+          {"reach_m", counts.reach},
+          {"force_n", counts.force},
+          {"hand_time_s", counts.hand_time()}};
 }
 
 /** Leading parts of the moves, as an order has them. */
@@ -139,6 +142,7 @@ std::optional<std::vector<OccurrenceId>> HoldsAfter(const assembly::OrderPlan& p
 nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
   const assembly::OrderPlan& plan = *report.plan;
   const FoundOrder& best = BestOf(plan);
+  const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan.rules, best);
   nlohmann::ordered_json moves = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const std::size_t m = best.moves[i];
@@ -151,7 +155,11 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
                                 {"out", {direction.x(), direction.y(), direction.z()}},
                                 {"engaged_mm", units::ToMm(step.engage_distance)},
                                 {"turns", !step.way.empty()},
-                                {"ways", move.ways.size()}};
+                                {"ways", move.ways.size()},
+                                {"reach_mm", units::ToMm(work[i].reach)},
+                                {"force_n", work[i].force},
+                                {"fits_n", work[i].press},
+                                {"hand_time_s", simulation::kModSeconds * work[i].mods}};
     if (move.aside) {
       json["moved_aside"] = MakeAsideJson(*report.model, *move.aside);
     }
@@ -188,10 +196,11 @@ nlohmann::ordered_json MakeArrowsJson(const PlanReport& report) {
 
 std::string DescribeCounts(const OrderCounts& counts, double cost) {
   return fmt::format(
-      "cost {:g}: {} turns of the product, {} changes of direction, {} of tool, {} "
-      "parts that nothing holds, {} fasteners whose tool has less room than in other orders",
+      "cost {:.4g}: {} turns of the product, {} changes of direction, {} of tool, {} "
+      "parts that nothing holds, {} fasteners whose tool has less room than in other orders; in "
+      "all moves together the hand reaches in by {:.2f} m, needs {:.3g} N and takes about {:.0f} s",
       cost, counts.turns, counts.direction_changes, counts.tool_changes, counts.loose,
-      counts.cramped);
+      counts.cramped, counts.reach, counts.force, counts.hand_time());
 }
 
 /** The paths of a few parts. */
@@ -407,7 +416,10 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                                 {"direction_change", report.weights.direction_change},
                                 {"tool_change", report.weights.tool_change},
                                 {"loose", report.weights.loose},
-                                {"cramped", report.weights.cramped}}}};
+                                {"cramped", report.weights.cramped},
+                                {"reach_per_m", report.weights.reach},
+                                {"force_per_n", report.weights.force},
+                                {"hand_time_per_s", report.weights.hand_time}}}};
   if (!plan.statics.empty()) {
     json["base_tips_at_deg"] = units::ToDeg(plan.standing_margin);
   }
@@ -491,12 +503,13 @@ std::string MakePlanPage(const PlanReport& report) {
   const assembly::OrderPlan& plan = *report.plan;
   const FoundOrder& best = BestOf(plan);
   std::string body = fmt::format(
-      "<h1>{}: plan of the assembly</h1>\n<ul class=\"tiles\">{}{}{}{}{}</ul>\n",
+      "<h1>{}: plan of the assembly</h1>\n<ul class=\"tiles\">{}{}{}{}{}{}</ul>\n",
       Escape(model.product->name), MakeTile("moves", fmt::format("{}", best.moves.size())),
       MakeTile("left out", fmt::format("{}", model.sequence.gaps.size())),
       MakeTile("turns of the product", fmt::format("{}", best.counts.turns)),
       MakeTile("changes of direction", fmt::format("{}", best.counts.direction_changes)),
-      MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)));
+      MakeTile("changes of tool", fmt::format("{}", best.counts.tool_changes)),
+      MakeTile("time of the hand, about", fmt::format("{:.0f} s", best.counts.hand_time())));
   const std::string fixture = DescribeFixture(report);
   body += fixture.empty() ? "" : fmt::format("<p>{}</p>\n", Escape(fixture));
   body += MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOut(report);

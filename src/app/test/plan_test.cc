@@ -55,6 +55,32 @@ TEST(PlanTest, EachOrderObeysEveryArrowThatIsCertain) {
   }
 }
 
+TEST(PlanTest, TheHandIsCountedByItsWeights) {
+  const std::string pump = ProductFile("gear_pump");
+  const json plan = RunHvasJson({"plan", pump});
+  double reach_mm = 0;
+  double force_n = 0;
+  double time_s = 0;
+  for (const json& move : plan["moves"]) {
+    reach_mm += move["reach_mm"].get<double>();
+    force_n += move["force_n"].get<double>();
+    time_s += move["hand_time_s"].get<double>();
+  }
+  const json& best = plan["orders"][0];
+  EXPECT_NEAR(best["reach_m"], 1e-3 * reach_mm, 1e-9);
+  EXPECT_NEAR(best["force_n"], force_n, 1e-6);
+  EXPECT_NEAR(best["hand_time_s"], time_s, 1e-9);
+  EXPECT_GT(reach_mm, 0);
+  EXPECT_GT(time_s, 37) << "a second a part at least";
+  const json timed =
+      RunHvasJson({"plan", pump, "--turn-cost", "0", "--direction-cost", "0", "--tool-cost", "0",
+                   "--loose-cost", "0", "--cramped-cost", "0", "--reach-cost", "0", "--force-cost",
+                   "0", "--hand-time-cost", "1"});
+  EXPECT_EQ(timed["weights"]["hand_time_per_s"], 1);
+  EXPECT_NEAR(timed["orders"][0]["cost"], timed["orders"][0]["hand_time_s"], 1e-9);
+  EXPECT_LE(timed["orders"][0]["hand_time_s"], timed["planned"]["hand_time_s"]);
+}
+
 TEST(PlanTest, APlanIsFollowed) {
   const TemporaryFolder folder;
   const std::string file = (folder / "plan.json").string();

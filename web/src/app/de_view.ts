@@ -50,7 +50,7 @@ export const deView: Record<keyof typeof enView, string> = {
   "order.use": "Diese Reihenfolge verwenden",
   "order.cancel": "Abbrechen",
   "order.busy": "Wird geprüft … {percent} %",
-  "order.costs": "Kosten {cost}: Das Produkt wird {turns}-mal gewendet, die Richtung wechselt {directions}-mal, das Werkzeug {tools}-mal.",
+  "order.costs": "Kosten {cost}: Das Produkt wird {turns}-mal gewendet, die Richtung wechselt {directions}-mal, das Werkzeug {tools}-mal. Insgesamt greift die Hand {reach} m tief hinein, braucht {force} N und etwa {time} s.",
   "order.fails.one": "Ein Teil kann nicht an dieser Stelle kommen.",
   "order.fails.other": "{n} Teile können nicht an dieser Stelle kommen.",
   "order.blocked": "Kann hier nicht kommen: Im Weg steht {names}.",

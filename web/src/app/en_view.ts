@@ -48,7 +48,7 @@ export const enView = {
   "order.use": "Use this order",
   "order.cancel": "Cancel",
   "order.busy": "Being checked… {percent} %",
-  "order.costs": "Cost {cost}: the product is turned {turns} times, the direction changes {directions} times, the tool {tools} times.",
+  "order.costs": "Cost {cost}: the product is turned {turns} times, the direction changes {directions} times, the tool {tools} times. In all the hand reaches in by {reach} m, needs {force} N and takes about {time} s.",
   "order.fails.one": "One part cannot come where it is.",
   "order.fails.other": "{n} parts cannot come where they are.",
   "order.blocked": "Cannot come here: in its way is {names}.",

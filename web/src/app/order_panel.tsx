@@ -43,6 +43,9 @@ function summaryOf(order: Order): string {
     turns: order.turns ?? 0,
     directions: order.direction_changes ?? 0,
     tools: order.tool_changes ?? 0,
+    reach: number(order.reach_m ?? 0, 2),
+    force: number(order.force_n ?? 0, 0),
+    time: number(order.hand_time_s ?? 0, 0),
   });
 }
 
