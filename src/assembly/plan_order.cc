@@ -140,8 +140,8 @@ std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::St
 // direction, a choice.
 constexpr double kAlikeCost = 0.1;
 
-/** Finds the statics of the orders, and puts those first of about equal cost in which less has to be
- held. */
+/** Finds the statics of the orders, and puts those first of about equal cost in which less has to
+ be held. */
 void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan) {
   const simulation::StateStatics states(model);
   std::vector<simulation::FoundOrder>& orders = plan->search.orders;
@@ -176,27 +176,6 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
   }
   std::move(sorted.begin(), sorted.end(), orders.begin());
   plan->statics = std::move(statics);
-}
-
-/** Explains why parts are left out. */
-void AddReasons(const Model& model, const PlanOptions& options, OrderPlan* plan) {
-  const std::vector<simulation::SequenceGap>& gaps = model.sequence.gaps;
-  const std::size_t count = std::min(options.most_reasons, gaps.size());
-  for (std::size_t i = 0; i < count && !options.stop.stop_requested(); ++i) {
-    simulation::GapReasonOptions reason_options;
-    reason_options.stop = options.stop;
-    reason_options.progress = [&](double fraction) {
-      if (options.progress) {
-        options.progress("why parts are left out",
-                         (static_cast<double>(i) + fraction) / static_cast<double>(count));
-      }
-    };
-    auto reason = simulation::ExplainGap(model, gaps[i].occurrence, reason_options);
-    if (!reason) {
-      return;
-    }
-    plan->reasons.push_back(std::move(*reason));
-  }
 }
 
 }  // namespace
@@ -239,7 +218,11 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
     plan.standing_margin = simulation::CalcStandingMargin(
         model, simulation::FindBase(model.sequence), Vec3(-plan.statics.front().up_W.front()));
   }
-  AddReasons(model, options, &plan);
+  ExplainGapsOptions gaps;
+  gaps.most = options.most_reasons;
+  gaps.progress = report("why parts are left out");
+  gaps.stop = options.stop;
+  plan.reasons = ExplainGaps(model, gaps);
   return plan;
 }
 

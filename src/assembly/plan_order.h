@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "assembly/explain_gaps.h"
 #include "base/result.h"
-#include "simulation/gap_reason.h"
 #include "simulation/model.h"
 #include "simulation/order_search.h"
 
@@ -20,8 +20,8 @@ struct PlanOptions {
   std::vector<std::pair<std::string, std::string>> before;  ///< Pairs of parts: first, then.
   /** Parts that have to come in this order, by name, path or id; the others anywhere. */
   std::vector<std::string> order;
-  std::size_t most_reasons{10};  ///< How many parts that are left out are looked into: a choice.
-  std::size_t most_orders{5};    ///< A choice, as a reader compares so many.
+  std::size_t most_reasons{kMostReasons};  ///< How many parts that are left out are looked into.
+  std::size_t most_orders{5};              ///< A choice, as a reader compares so many.
   bool gives_front{false};
   std::optional<std::chrono::duration<double>> time;  ///< The search ends after that.
   std::function<void(const std::string& stage, double fraction)> progress;  ///< May be null.

@@ -125,7 +125,9 @@ void GapExplainer::Restart() {
 
 bool GapExplainer::IsOver() {
   reason_.looks = looks_before_ + extraction_->looks();
-  reason_.is_limit_reached = reason_.is_limit_reached || reason_.looks >= options_.looks;
+  reason_.is_limit_reached =
+      reason_.is_limit_reached || reason_.looks >= options_.looks ||
+      (options_.deadline && std::chrono::steady_clock::now() > *options_.deadline);
   reason_.is_stopped = reason_.is_stopped || options_.stop.stop_requested();
   return reason_.is_limit_reached || reason_.is_stopped;
 }

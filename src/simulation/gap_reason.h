@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -64,7 +65,7 @@ struct GapReason {
   double caged_radius{0};          ///< kCaged: the radius of the ball that cannot get out [m].
   std::vector<GapChange> changes;  ///< What has worked first, and of that the smallest.
   std::uint64_t looks{0};          ///< Looks at parts that this took.
-  bool is_limit_reached{false};    ///< The looks ended before all changes were tried.
+  bool is_limit_reached{false};    ///< The looks, or the time, ended before all changes were tried.
   bool is_stopped{false};          ///< A stop was asked for; the reason is incomplete.
 
   /** The smallest change that lets the part in; null: none that was tried. */
@@ -85,6 +86,8 @@ struct GapReasonOptions {
   /** How many looks at parts it may take; it is looked at between trials, one of which takes
    thousands. */
   std::uint64_t looks{kGapLooks};
+  /** Ends it as the looks do, also between trials; what is found then depends on the machine. */
+  std::optional<std::chrono::steady_clock::time_point> deadline;
   /** How many looks the search for ways that turn may take, of one trial; 0: none is searched for.
    As many as the order of assembly takes where it looks briefly. */
   std::uint64_t way_looks{10'000};

@@ -7,13 +7,12 @@
 #include <fmt/format.h>
 
 #include "app/assembly/gap_reason_json.h"
+#include "app/assembly/left_out.h"
 #include "app/assembly/plan_file.h"
 #include "app/assembly/run_report.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
-#include "evidence/gap_picture.h"
-#include "pages/embedded_image.h"
 #include "pages/html_page.h"
 
 namespace hvas::app {
@@ -213,13 +212,6 @@ std::string DescribeParts(const simulation::Model& model, const std::vector<Occu
   return parts.size() > kNamed ? text + fmt::format(" and {} more", parts.size() - kNamed) : text;
 }
 
-/** Why a part is left out, in sentences; empty where it was not looked into. */
-std::vector<std::string> ListReasonLines(const PlanReport& report, std::size_t gap) {
-  return gap < report.plan->reasons.size()
-             ? simulation::FormatGapReason(*report.model, report.plan->reasons[gap])
-             : std::vector<std::string>();
-}
-
 /** How the fixture holds the base at first; empty where that is not known. */
 std::string DescribeFixture(const PlanReport& report) {
   const assembly::OrderPlan& plan = *report.plan;
@@ -370,34 +362,6 @@ std::string MakeComparison(const assembly::OrderPlan& plan) {
                             DescribeCounts(plan.search.planned.counts, plan.search.planned.cost));
 }
 
-/** Picture of why a part is left out; empty where there is none. */
-std::string MakeReasonPicture(const PlanReport& report, std::size_t gap) {
-  if (gap >= report.plan->reasons.size()) {
-    return {};
-  }
-  const simulation::GapReason& reason = report.plan->reasons[gap];
-  const std::string png = evidence::MakeGapPicture(*report.model, reason);
-  return png.empty()
-             ? png
-             : "<br>" + pages::MakeImage(png, evidence::DescribeGapPicture(*report.model, reason),
-                                         evidence::kGapPictureWidth, evidence::kGapPictureHeight);
-}
-
-/** What is left out, and why; empty where nothing is. */
-std::string MakeLeftOut(const PlanReport& report) {
-  const std::vector<simulation::SequenceGap>& gaps = report.model->sequence.gaps;
-  std::string html;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    html += fmt::format("<li><span class=\"bad\">{}</span>: {}",
-                        Escape(PathOf(*report.model, gaps[i].occurrence)), Escape(gaps[i].reason));
-    for (const std::string& line : ListReasonLines(report, i)) {
-      html += "<br>" + Escape(line);
-    }
-    html += MakeReasonPicture(report, i) + "</li>\n";
-  }
-  return html.empty() ? html : "<h2>Left out</h2>\n<ul>\n" + html + "</ul>\n";
-}
-
 }  // namespace
 
 nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
@@ -432,13 +396,12 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                     {"width", plan.search.width},
                     {"ended_early", plan.search.is_ended_early}};
   json["left_out"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
-    const simulation::SequenceGap& gap = model.sequence.gaps[i];
+  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
     json["left_out"].push_back({{"id", gap.occurrence.value()},
                                 {"name", PathOf(model, gap.occurrence)},
                                 {"reason", gap.reason}});
-    if (i < plan.reasons.size()) {
-      json["left_out"].back()["why"] = MakeGapReasonJson(model, plan.reasons[i]);
+    if (const auto* reason = FindReason({&model, &plan.reasons}, gap.occurrence)) {
+      json["left_out"].back()["why"] = MakeGapReasonJson(model, *reason);
     }
   }
   json["followed"] =
@@ -486,13 +449,7 @@ void PrintPlanTable(const PlanReport& report) {
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
     PrintOrder(fmt::format("Alternative {}: ", i), plan.search.orders[i], DescribeHolds(plan, i));
   }
-  for (std::size_t i = 0; i < model.sequence.gaps.size(); ++i) {
-    const simulation::SequenceGap& gap = model.sequence.gaps[i];
-    fmt::print("{}", Wrap("LEFT OUT: " + PathOf(model, gap.occurrence) + ": " + gap.reason, 0));
-    for (const std::string& line : ListReasonLines(report, i)) {
-      fmt::print("{}", Wrap(line, 2));
-    }
-  }
+  PrintLeftOut({&model, &plan.reasons});
   fmt::print("{}", Wrap(fmt::format("{}; preparation {:.1f} s, planning {:.1f} s.",
                                     DescribeSearch(plan), report.preparation_s, report.planning_s),
                         0));
@@ -512,7 +469,8 @@ std::string MakePlanPage(const PlanReport& report) {
       MakeTile("time of the hand, about", fmt::format("{:.0f} s", best.counts.hand_time())));
   const std::string fixture = DescribeFixture(report);
   body += fixture.empty() ? "" : fmt::format("<p>{}</p>\n", Escape(fixture));
-  body += MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOut(report);
+  body +=
+      MakeOrderTable(report) + MakeComparison(plan) + MakeLeftOutSection({&model, &plan.reasons});
   body += fmt::format("<p class=\"soft\">{}. No order is proved to be the best.</p>\n",
                       DescribeSearch(plan));
   return pages::MakeHtmlPage(model.product->name + ": plan of the assembly", body);

@@ -1,0 +1,36 @@
+#include "assembly/explain_gaps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hvas::assembly {
+
+std::vector<simulation::GapReason> ExplainGaps(const simulation::Model& model,
+                                               const ExplainGapsOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const std::vector<simulation::SequenceGap>& gaps = model.sequence.gaps;
+  const std::size_t count = std::min(options.most, gaps.size());
+  simulation::GapReasonOptions each;
+  each.stop = options.stop;
+  if (options.time) {
+    each.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(*options.time);
+  }
+  std::vector<simulation::GapReason> reasons;
+  while (reasons.size() < count && !options.stop.stop_requested() &&
+         (!each.deadline || Clock::now() < *each.deadline)) {
+    each.progress = [&](double fraction) {
+      if (options.progress) {
+        options.progress((static_cast<double>(reasons.size()) + fraction) /
+                         static_cast<double>(count));
+      }
+    };
+    auto reason = simulation::ExplainGap(model, gaps[reasons.size()].occurrence, each);
+    if (!reason) {
+      break;
+    }
+    reasons.push_back(std::move(*reason));
+  }
+  return reasons;
+}
+
+}  // namespace hvas::assembly
