@@ -144,7 +144,7 @@ def main():
                 continue
             for seed in arguments.seeds.split(","):
                 answer, error, cpu_s, memory, is_ended = run(
-                    [arguments.hvas, "assemble", str(product), "--json", "-q", "--seed", seed], cache, arguments.limit)
+                    [arguments.hvas, "assemble", str(product), "--json", "-q", "--reasons", "0", "--seed", seed], cache, arguments.limit)
                 if answer is None:
                     is_good = False
                     reason = "no answer within the limit" if is_ended else error

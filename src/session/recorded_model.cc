@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/digest.h"
+#include "product/accessories.h"
 #include "product/product_io.h"
 #include "session/command_json.h"
+#include "simulation/extraction.h"
 
 namespace hvas::session {
 namespace {
@@ -154,6 +156,53 @@ Result<std::optional<product::Product>> FindProduct(record::Reader* reader) {
   return std::optional(std::move(*product));
 }
 
+namespace {
+
+Result<Json> ReadModelJson(record::Reader* reader) {
+  const auto bytes = reader->ReadAttachment(kModelAttachment);
+  if (!bytes) {
+    return Unexpected(bytes.error());
+  }
+  return Json::parse(reinterpret_cast<const char*>(bytes->data()),
+                     reinterpret_cast<const char*>(bytes->data() + bytes->size()), nullptr, false);
+}
+
+}  // namespace
+
+Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(record::Reader* reader,
+                                                                const product::Product& product) {
+  const auto json = ReadModelJson(reader);
+  if (!json) {
+    return json.error().code == ErrorCode::kNotFound
+               ? Result<std::vector<product::OccurrenceId>>({})
+               : Unexpected(json.error());
+  }
+  JsonFields fields(*json);
+  const auto steps = ParseSteps(fields.Array(kSteps), product.occurrences.size());
+  if (!steps) {
+    return Unexpected(steps.error());
+  }
+  std::vector<bool> has_step(product.occurrences.size(), false);
+  for (const simulation::SequenceStep& step : *steps) {
+    for (const product::OccurrenceId part : simulation::UnitOf(step)) {
+      has_step[part.index()] = true;
+    }
+  }
+  for (const auto kind : {product::AccessoryKind::kTool, product::AccessoryKind::kFixture,
+                          product::AccessoryKind::kBench}) {
+    for (const product::OccurrenceId id : product::ListAccessories(product, kind)) {
+      has_step[id.index()] = true;
+    }
+  }
+  std::vector<product::OccurrenceId> without;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    if (!has_step[occurrence.id.index()]) {
+      without.push_back(occurrence.id);
+    }
+  }
+  return without;
+}
+
 Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reader,
                                                            simulation::CompileOptions options,
                                                            Diagnostics* diagnostics) {
@@ -161,13 +210,11 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   if (!product) {
     return Unexpected(product.error());
   }
-  const auto bytes = reader->ReadAttachment(kModelAttachment);
-  if (!bytes) {
-    return Unexpected(bytes.error());
+  const auto read = ReadModelJson(reader);
+  if (!read) {
+    return Unexpected(read.error());
   }
-  const Json json =
-      Json::parse(reinterpret_cast<const char*>(bytes->data()),
-                  reinterpret_cast<const char*>(bytes->data() + bytes->size()), nullptr, false);
+  const Json& json = *read;
   JsonFields fields(json);
   std::string fingerprint;
   fields(kFingerprint, fingerprint);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/result.h"
@@ -32,6 +33,12 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder);
 
 /** Does as LoadProduct(); none for a record of before schema 3, which has no product in it. */
 [[nodiscard]] Result<std::optional<product::Product>> FindProduct(record::Reader* reader);
+
+/** Lists the parts that have no step in a record's order of assembly: no way was found for them.
+ Empty where the record has no model.
+ @param product  The record's. Errors: kUnreadable for a model that is none. */
+[[nodiscard]] Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(
+    record::Reader* reader, const product::Product& product);
 
 /** A record's model, compiled anew.
  @param options  How; the seed and the choice of pairs are those of the record.

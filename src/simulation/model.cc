@@ -243,10 +243,32 @@ void GiveRoles(Model* model) {
   }
 }
 
+/** Has the parts without a step among the gaps, and no others: with another base, or another order,
+ they are not those that were found. */
+void MatchGaps(Model* model) {
+  std::vector<bool> is_in_step(model->bodies.size(), false);
+  for (const SequenceStep& step : model->sequence.steps) {
+    for (const OccurrenceId part : UnitOf(step)) {
+      is_in_step[part.index()] = true;
+    }
+  }
+  std::vector<SequenceGap>& gaps = model->sequence.gaps;
+  std::erase_if(gaps, [&](const SequenceGap& gap) { return is_in_step[gap.occurrence.index()]; });
+  for (const Body& body : model->bodies) {
+    const bool is_known = std::any_of(gaps.begin(), gaps.end(), [&body](const SequenceGap& gap) {
+      return gap.occurrence == body.occurrence;
+    });
+    if (body.role == BodyRole::kPart && !is_in_step[body.occurrence.index()] && !is_known) {
+      gaps.push_back({body.occurrence, "it has no step in the order that is followed"});
+    }
+  }
+}
+
 /** The order that was asked for, in place of the one that was found. */
 Result<void> PutInOrder(const CompileOptions& options, Model* model) {
   if (!options.steps.empty()) {
     model->sequence.steps = options.steps;
+    MatchGaps(model);
   }
   if (options.first_parts.empty()) {
     return {};

@@ -1,20 +1,36 @@
 #include "app/assembly/assemble.h"
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "app/assembly/assemble_report.h"
+#include "app/assembly/left_out.h"
 #include "app/end_watch.h"
 #include "app/output/json_flag.h"
 #include "app/output/report_failure.h"
+#include "app/output/text_layout.h"
 #include "base/clock.h"
 
 namespace hvas::app {
 namespace {
 
 constexpr int kNotAllSeated = 2;  // The exit status where a part is not in its place.
+
+/** Names the command whose page has pictures of the reasons; nothing where there are none. */
+void PrintWhereReasonsAreDrawn(const LeftOut& left_out, const AssembleOptions& options) {
+  if (left_out.reasons->empty()) {
+    return;
+  }
+  const std::string& record = options.run.record.string();
+  fmt::print("{}", Wrap(fmt::format("Pictures of what stops them: hvas {} -o why.html",
+                                    record.empty() ? "plan " + options.load.file.string()
+                                                   : "report " + record),
+                        0));
+}
 
 }  // namespace
 
@@ -38,10 +54,17 @@ int RunAssemble(const AssembleOptions& options) {
     return ReportFailure(run.error());
   }
   const SessionReport report = MakeSessionReport(options, std::move(*run), preparation_ns);
+  const auto reasons =
+      ExplainLeftOut(**model, options.reasons_s, options.load.is_quiet, end.stop());
+  const LeftOut left_out{&**model, &reasons};
   if (options.is_json) {
-    PrintAssemblyJson(**model, report);
+    PrintAssemblyJson(**model, report, left_out);
   } else {
     PrintAssemblyTable(**model, report);
+    if (options.reasons_s > 0) {
+      PrintLeftOut(left_out);
+      PrintWhereReasonsAreDrawn(left_out, options);
+    }
   }
   if (report.run.record_error) {
     return ReportFailure(*report.run.record_error);
@@ -74,6 +97,7 @@ void AddAssemble(CLI::App* app, int* status) {
           "where their paths are apart; with a real device, its user chooses the parts")
       ->needs("--device");
   AddRunOptions(command, options.get());
+  AddReasonsOption(command, &options->reasons_s);
   AddJsonFlag(command, &options->is_json, "assemble or preparation");
   AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);

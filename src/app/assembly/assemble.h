@@ -14,6 +14,7 @@ namespace hvas::app {
 struct AssembleOptions : RunCommandOptions {
   OrderChoice order;
   std::string second_device;  ///< Address for the other hand; empty: there is no other hand.
+  double reasons_s{0};        ///< How long parts without a way are looked into [s]; 0: not.
 };
 
 /** Lays the parts of a product out on a table and lets a simulated person, or two, or whoever has

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/gap_reason_json.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
@@ -117,7 +118,7 @@ void PrintParts(const Model& model, const RunOutcome& outcome) {
 
 }  // namespace
 
-void PrintAssemblyJson(const Model& model, const SessionReport& report) {
+void PrintAssemblyJson(const Model& model, const SessionReport& report, const LeftOut& left_out) {
   const RunOutcome& outcome = report.run;
   nlohmann::ordered_json json = MakeRunJson(model, report);
   json["seated"] = CountSeated(outcome);
@@ -126,6 +127,9 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report) {
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
     json["parts"].push_back(ToJson(model, part));
+    if (const simulation::GapReason* reason = FindReason(left_out, part.occurrence)) {
+      json["parts"].back()["why"] = MakeGapReasonJson(model, *reason);
+    }
   }
   PrintJson(json);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
+#include "assembly/explain_gaps.h"
 #include "assembly/prepare_model.h"
 #include "base/clock.h"
 #include "record/recorder.h"
@@ -173,6 +175,37 @@ SessionReport MakeSessionReport(const RunCommandOptions& options, assembly::RunO
   report.is_realtime = options.run.is_realtime;
   report.force_map = options.run.force_map;
   return report;
+}
+
+void AddReasonsOption(CLI::App* command, double* reasons_s) {
+  constexpr double kReasonsTime = 60;  // [s]: a person waits that long. A choice.
+  *reasons_s = kReasonsTime;
+  command
+      ->add_option("--reasons", *reasons_s,
+                   "How long is looked into why parts have no way in, of ten parts at most [s]; 0: "
+                   "not at all")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+}
+
+std::vector<simulation::GapReason> ExplainLeftOut(const Model& model, double time_s, bool is_quiet,
+                                                  const std::stop_token& stop) {
+  if (model.sequence.gaps.empty() || time_s == 0) {
+    return {};
+  }
+  constexpr const char* kStage = "why parts have no way in";
+  const bool is_shown = !is_quiet && IsWatched();
+  assembly::ExplainGapsOptions options;
+  options.time = std::chrono::duration<double>(time_s);
+  options.stop = stop;
+  if (is_shown) {
+    options.progress = [](double fraction) { ShowProgress(kStage, fraction); };
+  }
+  auto reasons = assembly::ExplainGaps(model, options);
+  if (is_shown) {
+    ShowProgress(kStage, 1);
+  }
+  return reasons;
 }
 
 void AddBaseOption(CLI::App* command, std::string* base) {

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "app/recording/record_options.h"
+
 namespace CLI {
 class App;
 }
@@ -9,7 +11,8 @@ class App;
 namespace hvas::app {
 
 struct ReportOptions {
-  std::filesystem::path record;
+  RecordOptions record;
+  double reasons_s{0};           ///< How long parts without a way are looked into [s]; 0: not.
   std::filesystem::path output;  ///< .html or .pdf
   bool is_forced{false};         ///< Replaces a file that is there.
 };

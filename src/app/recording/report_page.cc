@@ -87,7 +87,7 @@ bool IsDisassembly(const Summary& summary) {
   return MetaOf(summary, "task") == "disassembly";
 }
 
-std::string MakeHead(const Summary& summary) {
+std::string MakeHead(const Summary& summary, std::size_t left_out) {
   const std::string name = Escape(MetaOf(summary, "product"));
   std::set<std::uint32_t> taken;
   double peak_felt = 0;
@@ -111,6 +111,12 @@ std::string MakeHead(const Summary& summary) {
                            : fmt::format("<span class=\"bad\">{}</span>", done),
       taken.size(), is_apart ? "left" : "came to",
       summary.is_complete ? "" : "; the record is incomplete, or the session still runs");
+  if (left_out > 0) {
+    html += fmt::format(
+        "<p class=\"verdict\"><span class=\"bad\">{}</span> {} no way in: see <a "
+        "href=\"#left-out\">what stops {}</a>.</p>",
+        left_out, left_out == 1 ? "part has" : "parts have", left_out == 1 ? "it" : "them");
+  }
   if (!summary.damage.empty()) {
     html += fmt::format(
         "<p class=\"verdict\"><span class=\"bad\">This record is damaged</span>: {}. This page "
@@ -361,12 +367,12 @@ std::string MakeSource(const Summary& summary) {
 
 }  // namespace
 
-std::string MakeReportPage(const Summary& summary) {
+std::string MakeReportPage(const Summary& summary, const ReportedLeftOut& left_out) {
   return pages::MakeHtmlPage(MetaOf(summary, "product") + ": assembly report",
-                             MakeHead(summary) + MakeProductPicture(summary) +
-                                 MakeSequence(summary) + MakeWays(summary) + MakeForces(summary) +
-                                 MakeFits(summary) + MakeLoops(summary) + MakeIncidents(summary) +
-                                 MakeSource(summary),
+                             MakeHead(summary, left_out.count) + MakeProductPicture(summary) +
+                                 left_out.section + MakeSequence(summary) + MakeWays(summary) +
+                                 MakeForces(summary) + MakeFits(summary) + MakeLoops(summary) +
+                                 MakeIncidents(summary) + MakeSource(summary),
                              kStyle);
 }
 

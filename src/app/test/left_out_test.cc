@@ -14,9 +14,13 @@ namespace {
 
 using hvas::testing::TemporaryFolder;
 using nlohmann::json;
+using ::testing::IsNotSubstring;
 using ::testing::IsSubstring;
 using testing::ObjText;
+using testing::Ran;
 using testing::ReadSchema;
+using testing::ReadText;
+using testing::RunHvas;
 using testing::RunHvasJson;
 using testing::Validate;
 
@@ -58,6 +62,8 @@ class PinInBottle : public ::testing::Test {
     obj->AddCap(over, true);
   }
 
+  [[nodiscard]] std::string In(const char* name) const { return (folder_ / name).string(); }
+
   TemporaryFolder folder_;
   std::string file_;
 };
@@ -85,6 +91,53 @@ TEST_F(PinInBottle, APlanHasItsReasonByTheSchema) {
   wrong = plan;
   wrong["left_out"][0]["why"]["changes"][0]["colour"] = 1;
   EXPECT_EQ(Validate(ReadSchema("plan"), wrong).size(), 1U);
+}
+
+TEST_F(PinInBottle, AssembleTellsTheReasonAndWhereItIsDrawn) {
+  const Ran ran = RunHvas({"assemble", file_});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_PRED_FORMAT2(IsSubstring, "LEFT OUT: ", ran.out);
+  const json plan = RunHvasJson({"plan", file_}, 2);
+  const std::string first = plan["left_out"][0]["why"]["text"][0];
+  EXPECT_PRED_FORMAT2(IsSubstring, first.substr(0, 40), ran.out) << "as hvas plan has it";
+  EXPECT_PRED_FORMAT2(IsSubstring, "hvas plan ", ran.out);
+  const Ran brief = RunHvas({"assemble", file_, "--reasons", "0"});
+  EXPECT_PRED_FORMAT2(IsNotSubstring, "LEFT OUT: ", brief.out);
+  const json run = RunHvasJson({"assemble", file_}, 2);
+  EXPECT_EQ(Validate(ReadSchema("assemble"), run), std::vector<std::string>{});
+  int reasons = 0;
+  for (const json& part : run["parts"]) {
+    if (part.contains("why")) {
+      ++reasons;
+      EXPECT_FALSE(part["seated"].get<bool>());
+      ExpectReason(part["why"]);
+    }
+  }
+  EXPECT_EQ(reasons, 1);
+}
+
+TEST_F(PinInBottle, TheReportOfARecordHasTheReasonAndItsPicture) {
+  const std::string record = In("run.hvasrec");
+  const Ran ran = RunHvas({"assemble", file_, "--record", record});
+  EXPECT_PRED_FORMAT2(IsSubstring, "hvas report ", ran.out);
+  const std::string page = In("run.html");
+  const Ran report = RunHvas({"report", record, "-o", page});
+  ASSERT_EQ(report.status, 0) << report.err;
+  const std::string html = ReadText(page);
+  const json plan = RunHvasJson({"plan", file_}, 2);
+  EXPECT_PRED_FORMAT2(IsSubstring, "<h2 id=\"left-out\">", html);
+  EXPECT_PRED_FORMAT2(IsSubstring, "</span> part has no way in", html);
+  for (const json& line : plan["left_out"][0]["why"]["text"]) {
+    EXPECT_PRED_FORMAT2(IsSubstring, line.get<std::string>(), html);
+  }
+  const std::size_t section = html.find("id=\"left-out\"");
+  const std::size_t picture = html.find("data:image/png;base64,", section);
+  EXPECT_LT(picture, html.find("<h2>", section)) << "in its section";
+  // Without the reasons it has the name only, and prepares nothing.
+  ASSERT_EQ(RunHvas({"report", record, "-o", page, "--force", "--reasons", "0"}).status, 0);
+  const std::string brief = ReadText(page);
+  EXPECT_PRED_FORMAT2(IsSubstring, "pin</span></li>", brief);
+  EXPECT_LT(brief.size(), html.size());
 }
 
 }  // namespace
