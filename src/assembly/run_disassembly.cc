@@ -89,6 +89,9 @@ std::vector<PartResult> ListResults(const DisassemblyPlan& plan,
     parts.push_back(part);
   };
   for (const simulation::Removal& removal : plan.removals) {
+    if (IsWithinProduct(removal.step.kind)) {
+      continue;
+    }
     add(removal.step.occurrence, kStopped);
     for (const product::OccurrenceId member : removal.step.members) {
       add(member, kStopped);

@@ -33,7 +33,7 @@ SequenceStep MakeReturn(OccurrenceId id, const sweep::Path& way, bool does_turn,
   step.occurrence = id;
   const Vec3 gone = way.back() * box_B.centre() - way.front() * box_B.centre();
   step.engage_distance = sweep::CalcLength(way, box_B.centre());
-  step.extraction_W = gone.norm() > kEnd ? gone.normalized() : Vec3::UnitZ();
+  step.extraction_W = gone.norm() > kEnd ? Vec3(gone.normalized() + Vec3::Zero()) : Vec3::UnitZ();
   if (does_turn) {
     step.way = sweep::Resample(way, box_B, kWayStep);
   }
@@ -44,8 +44,9 @@ SequenceStep MakeReturn(OccurrenceId id, const sweep::Path& way, bool does_turn,
 SequenceStep MakeAside(const SequenceStep& back, const sweep::Path& way) {
   SequenceStep step = back;
   step.kind = SequenceStep::Kind::kAside;
-  step.extraction_W = -back.extraction_W;
-  step.offset_W = way.back().p() - way.front().p();
+  // Without signs of zeros, as a plan that was written to a file has them.
+  step.extraction_W = Vec3::Zero() - back.extraction_W;
+  step.offset_W = way.back().p() - way.front().p() + Vec3::Zero();
   std::reverse(step.way.begin(), step.way.end());
   return step;
 }

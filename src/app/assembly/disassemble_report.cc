@@ -32,6 +32,15 @@ const Removal* FindRemoval(const DisassemblyPlan& plan, OccurrenceId id) {
   return found == plan.removals.end() ? nullptr : &*found;
 }
 
+/** The move by which another part lets this one pass; null where none has to. */
+const simulation::SequenceStep* FindAsideOf(const DisassemblyPlan& plan, const Removal& removal) {
+  const auto number = &removal - plan.removals.data();
+  const simulation::SequenceStep* before = number > 0 ? &(&removal - 1)->step : nullptr;
+  const bool goes_aside =
+      before != nullptr && before->kind == simulation::SequenceStep::Kind::kAside;
+  return goes_aside ? before : nullptr;
+}
+
 std::size_t CountOut(const SessionReport& report) {
   return static_cast<std::size_t>(
       std::count_if(report.run.parts.begin(), report.run.parts.end(),
@@ -83,6 +92,9 @@ nlohmann::ordered_json ToJson(const Model& model, const DisassemblyPlan& plan,
                               {"out", part.reason.empty()}};
   if (const Removal* removal = FindRemoval(plan, part.occurrence)) {
     json.update(ToJson(model, *removal));
+    if (const auto* aside = FindAsideOf(plan, *removal)) {
+      json["moved_aside"] = MakeAsideJson(model, *aside);
+    }
   }
   json.update(MakeHoldJson(part));
   return json;
@@ -121,7 +133,11 @@ void PrintDisassemblyTable(const Model& model, const DisassemblyPlan& plan,
       table.Add({number, name}, part.note);
       continue;
     }
-    const std::string waiting = DescribeWaiting(model, *removal);
+    std::string waiting = DescribeWaiting(model, *removal);
+    if (const auto* aside = FindAsideOf(plan, *removal)) {
+      waiting += fmt::format("{}with {} moved aside by {:.1f} mm", waiting.empty() ? "" : "; ",
+                             PathOf(model, aside->occurrence), units::ToMm(aside->engage_distance));
+    }
     const std::string gap = waiting.empty() || part.note.empty() ? "" : "; ";
     table.Add({number, name, simulation::DescribeDirection(removal->step.extraction_W),
                fmt::format("{:.1f}", units::ToMm(removal->way_length)),
