@@ -168,11 +168,15 @@ SceneSnapshot SceneOpener::RestoreWork(const SavedWork& kept,
   return begun;
 }
 
-void SceneOpener::OnHold(const simulation::SimulationEvent& event,
+void SceneOpener::OnHold(const simulation::SimulationEvent& /*event*/,
                          const std::optional<SceneSnapshot>& /*before*/) {
   const std::lock_guard lock(mutex_);
   resumed_ = nullptr;
-  if (whole_ != nullptr && event.kind == simulation::SimulationEvent::Kind::kDropped) {
+}
+
+void SceneOpener::OnPlacement() {
+  const std::lock_guard lock(mutex_);
+  if (whole_ != nullptr) {
     parts_.worker->Post([this](const std::stop_token& /*stop*/) { ShowWhole(); });
   }
 }

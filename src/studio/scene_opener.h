@@ -65,6 +65,7 @@ class SceneOpener final : public SceneObserver {
  private:
   void OnHold(const simulation::SimulationEvent& event,
               const std::optional<SceneSnapshot>& before) override;
+  void OnPlacement() override;
   /** Posts a job that takes the place of the one in progress. */
   void Post(std::function<void()> job);
   /** @param kept  Saved work to resume; null: none. */
