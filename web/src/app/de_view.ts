@@ -2,6 +2,11 @@
 import type { enView } from "./en_view";
 
 export const deView: Record<keyof typeof enView, string> = {
+  "place.loose": "lose",
+  "place.held": "in der Hand",
+  "place.placed": "montiert",
+  "place.parked": "abgelegt",
+  "place.pending": "wird vorbereitet",
   "cube.front": "Vorne",
   "cube.back": "Hinten",
   "cube.left": "Links",

@@ -1,5 +1,10 @@
-/** English of VR, the workshop and the view. */
+/** English of VR, the workshop, the view and the places of parts. */
 export const enView = {
+  "place.loose": "loose",
+  "place.held": "held",
+  "place.placed": "placed",
+  "place.parked": "parked",
+  "place.pending": "being prepared",
   "cube.front": "Front",
   "cube.back": "Back",
   "cube.left": "Left",

@@ -157,9 +157,7 @@ export class Studio {
       live.step.value = { index: scene.next_step, total: scene.steps.length + scene.pending };
       live.scene.value = scene;
       this.toldSince.filter(isOfPlaces).forEach((event) => this.applyAssembly(event));
-      if (scene.pending === 0) {
-        this.store.loading.value = null;
-      }
+      this.store.loading.value = scene.pending > 0 ? this.store.loading.value : null;
     });
   }
 
