@@ -17,7 +17,7 @@ using simulation::GivenCommand;
 using simulation::PartState;
 using simulation::SequenceStep;
 
-constexpr std::array kPlacements{"loose", "held", "placed", "parked"};
+constexpr std::array kPlacements{"loose", "held", "placed", "parked", "pending"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {

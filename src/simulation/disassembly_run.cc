@@ -30,8 +30,7 @@ DisassemblyRun::DisassemblyRun(Simulation* simulation, const DisassemblyPlan* pl
 bool DisassemblyRun::IsOut(const Removal& removal) const {
   const Placement placement = physics().placement(removal.step.occurrence);
   if (IsWithinProduct(removal.step.kind)) {
-    const bool goes_aside = removal.step.kind == SequenceStep::Kind::kAside;
-    return placement == (goes_aside ? Placement::kParked : Placement::kPlaced);
+    return placement == PlacementAfter(removal.step.kind);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[removal.step.occurrence.index()];
   return dropped && !dropped->was_seated && dropped->to_place >= removal.step.engage_distance;

@@ -105,9 +105,12 @@ void Extraction::SetUnit(const Unit& unit, bool is_in_unit) {
   }
 }
 
-double Extraction::SizeOf(OccurrenceId id) const {
-  const product::Part& part = product_.part_of(id);
+double SizeOf(const product::Part& part) {
   return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
+}
+
+double Extraction::SizeOf(OccurrenceId id) const {
+  return simulation::SizeOf(product_.part_of(id));
 }
 
 std::string Extraction::Describe(OccurrenceId id) const {

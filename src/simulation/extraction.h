@@ -22,6 +22,9 @@ using Unit = std::vector<product::OccurrenceId>;
 /** The parts that move in a step, the leading one first. */
 [[nodiscard]] Unit UnitOf(const SequenceStep& step);
 
+/** Volume, or that of the box of a part without one [m^3]. */
+[[nodiscard]] double SizeOf(const product::Part& part);
+
 /** A part that stands in the way of a unit along a direction. */
 struct Obstacle {
   product::OccurrenceId occurrence;  ///< Invalid: the table.
@@ -74,7 +77,7 @@ class Extraction {
 
   void SetPresent(const Unit& unit, bool is_present);
 
-  /** Volume, or that of the box of a part without one [m^3]. */
+  /** The size of a part [m^3], as the function above has it. */
   [[nodiscard]] double SizeOf(product::OccurrenceId id) const;
 
   [[nodiscard]] std::string Describe(product::OccurrenceId id) const;

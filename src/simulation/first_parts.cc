@@ -6,16 +6,13 @@
 #include <set>
 
 #include "product/accessories.h"
+#include "simulation/extraction.h"
 
 namespace hvas::simulation {
 namespace {
 
 using product::OccurrenceId;
 using product::PartId;
-
-double CalcSize(const product::Part& part) {
-  return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
-}
 
 bool HasAccessories(const product::Product& product) {
   using product::AccessoryKind;
@@ -41,7 +38,7 @@ FirstParts ChooseFirstParts(const product::Product& product) {
   const auto largest =
       std::max_element(product.occurrences.begin(), product.occurrences.end(),
                        [&product](const product::Occurrence& a, const product::Occurrence& b) {
-                         return CalcSize(product.part_of(a.id)) < CalcSize(product.part_of(b.id));
+                         return SizeOf(product.part_of(a.id)) < SizeOf(product.part_of(b.id));
                        });
   if (largest == product.occurrences.end()) {
     return {};

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "dynamics/world.h"
 #include "mates/thread_joints.h"
 #include "simulation/hand_time.h"
 
@@ -12,37 +13,31 @@ namespace {
 
 using product::OccurrenceId;
 
-constexpr double kGravity = 9.81;  // As that of dynamics::WorldOptions [m/s2].
 // The thickness of a hand that holds a part: what is nearer to the way is in its way [m]. A choice.
 constexpr double kHandThickness = 30e-3;
 // A part that is pushed so far before it meets something is not backed by it [m]. A choice.
 constexpr double kBackingGap = 1e-3;
 constexpr double kAlongFit = 0.985;  // Cosine: 10 degrees between the axis of a fit and a way.
 
-/** The box of a part along and across a way. */
+/** The box of a part along and across a way: F is W turned so that z is the way out. */
 class WayFrame {
  public:
   explicit WayFrame(const Vec3& extraction_W) {
-    axes_.col(2) = extraction_W;
-    axes_.col(0) = extraction_W.unitOrthogonal();
-    axes_.col(1) = extraction_W.cross(axes_.col(0));
+    Mat3 R_WF;
+    R_WF.col(2) = extraction_W;
+    R_WF.col(0) = extraction_W.unitOrthogonal();
+    R_WF.col(1) = extraction_W.cross(R_WF.col(0));
+    X_FW_ = spatial::Pose(Quat(R_WF).conjugate(), Vec3::Zero());
   }
 
   [[nodiscard]] spatial::Box BoxOf(const Model& model, OccurrenceId id) const {
     const product::Product& product = *model.product;
-    const spatial::Box& box_B = product.part_of(id).box_B;
-    spatial::Box box;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 p_B((corner & 1) != 0 ? box_B.high.x() : box_B.low.x(),
-                     (corner & 2) != 0 ? box_B.high.y() : box_B.low.y(),
-                     (corner & 4) != 0 ? box_B.high.z() : box_B.low.z());
-      box.Add(axes_.transpose() * (product.occurrences[id.index()].X_WB * p_B));
-    }
-    return box;
+    return spatial::Transform(X_FW_ * product.occurrences[id.index()].X_WB,
+                              product.part_of(id).box_B);
   }
 
  private:
-  Mat3 axes_;
+  spatial::Pose X_FW_;
 };
 
 /** How far two boxes are apart across the way, which is z [m]. */
@@ -55,6 +50,11 @@ double CalcGapAcross(const spatial::Box& a, const spatial::Box& b) {
 Vec3 AxisOf(const product::Product& product, const product::Mate& mate) {
   const Quat q = (product.occurrences[mate.a.occurrence.index()].X_WB * mate.a.X_BM).q();
   return q * (mate.kind == product::MateKind::kPrismatic ? Vec3::UnitX() : Vec3::UnitZ());
+}
+
+/** The gravity that loose parts have [m/s^2]. */
+double Gravity() {
+  return dynamics::WorldOptions().gravity;
 }
 
 bool IsIn(const Unit& unit, OccurrenceId id) {
@@ -171,7 +171,7 @@ void EffortFinder::FindBacking(const Unit& pushed, std::size_t pushing, const Ve
 
 double EffortFinder::CalcWeight(const Unit& parts) const {
   return std::accumulate(parts.begin(), parts.end(), 0.0, [this](double sum, OccurrenceId part) {
-    return sum + kGravity * model_.bodies[part.index()].mass.mass;
+    return sum + Gravity() * model_.bodies[part.index()].mass.mass;
   });
 }
 
@@ -197,7 +197,7 @@ int EffortFinder::CalcMods(const Unit& parts, bool has_tool) const {
   }
   // The hand goes to the part as far as it then goes with it.
   return 2 * CalcMoveMods(distance) + CalcGetMods(box.size()) + CalcPutMods(care) +
-         CalcLoadMods(CalcWeight(parts) / kGravity) + (has_tool ? kToolOnMods : 0) +
+         CalcLoadMods(CalcWeight(parts) / Gravity()) + (has_tool ? kToolOnMods : 0) +
          kCrankMods * static_cast<int>(std::ceil(turns));
 }
 

@@ -81,9 +81,8 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
 
 bool PartRun::HasNothingToMove(const SequenceStep& step) const {
   const Placement placement = physics().placement(step.occurrence);
-  const bool goes_aside = step.kind == SequenceStep::Kind::kAside;
   return IsWithinProduct(step.kind) && placement != Placement::kHeld &&
-         placement != (goes_aside ? Placement::kPlaced : Placement::kParked);
+         placement != PlacementBefore(step.kind);
 }
 
 PersonTask PartRun::MakeTask(const SequenceStep& step) {

@@ -33,6 +33,16 @@ enum class Placement : std::uint8_t {
   return Placement::kLoose;
 }
 
+/** What a part is before a step within the product moves it, and what after.
+ @pre IsWithinProduct(kind) */
+[[nodiscard]] constexpr Placement PlacementBefore(SequenceStep::Kind kind) noexcept {
+  return kind == SequenceStep::Kind::kAside ? Placement::kPlaced : Placement::kParked;
+}
+
+[[nodiscard]] constexpr Placement PlacementAfter(SequenceStep::Kind kind) noexcept {
+  return kind == SequenceStep::Kind::kAside ? Placement::kParked : Placement::kPlaced;
+}
+
 /** Where a part is, and what it does there. */
 struct PartState {
   Placement placement{Placement::kLoose};

@@ -256,10 +256,10 @@ bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
     if (leader.is_valid() && placement == Placement::kLoose) {
       return step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
     }
-    if (step.kind == SequenceStep::Kind::kReturn) {
-      return placement == Placement::kParked;
+    if (IsWithinProduct(step.kind)) {
+      return placement == PlacementBefore(step.kind);
     }
-    if (step.kind == SequenceStep::Kind::kRemove || step.kind == SequenceStep::Kind::kAside) {
+    if (step.kind == SequenceStep::Kind::kRemove) {
       return placement == Placement::kPlaced;
     }
     return step.members.empty()

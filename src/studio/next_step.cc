@@ -20,11 +20,8 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
                                                            id) != step.members.end();
     const Placement placement = state.parts[step.occurrence.index()].placement;
     const bool is_next = i == state.next_step && step.occurrence == id;
-    if (is_next && IsWithinProduct(step.kind)) {
-      const bool goes_aside = step.kind == SequenceStep::Kind::kAside;
-      if (placement == (goes_aside ? Placement::kPlaced : Placement::kParked)) {
-        return step;
-      }
+    if (is_next && IsWithinProduct(step.kind) && placement == PlacementBefore(step.kind)) {
+      return step;
     }
     if (IsWithinProduct(step.kind) || step.kind == SequenceStep::Kind::kBase || !has_it ||
         (step.members.empty() && placement != Placement::kLoose)) {

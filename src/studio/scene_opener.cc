@@ -75,7 +75,7 @@ void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& n
   const SceneSnapshot before = parts_.live->MakeRestingSnapshot();
   SceneBuilder::SceneFn on_first_parts;
   if (when == When::kFirstParts) {
-    on_first_parts = [this](const auto& first) { ShowFirst(first); };
+    on_first_parts = [this](const auto& first) { Show({first, {}}); };
   }
   const auto scene = parts_.builder->Open(file, name, MakeProgressListener(parts_.events, name),
                                           stop, on_first_parts);
@@ -103,7 +103,6 @@ void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& n
     ShowWhole();
     return;
   }
-  parts_.edits->ClearHistory();
   const SceneSnapshot begun =
       kept != nullptr ? RestoreWork(*kept, *scene) : SceneSnapshot{*scene, {}};
   const Json resumed = kept != nullptr ? MakeResumedEvent(begun) : Json(nullptr);
@@ -115,18 +114,18 @@ void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& n
   if (kept != nullptr && begun.state.parts.empty()) {
     parts_.saver->BackUp();
   }
-  parts_.live->Show(begun.scene, begun.state, false);
-  parts_.paths->Clear();  // paths of the previous product, whose last frame has come
-  parts_.edits->PublishHistory();
+  Show(begun);
   if (!resumed.is_null()) {
     parts_.events->Publish(resumed);
   }
 }
 
-void SceneOpener::ShowFirst(const std::shared_ptr<const OpenScene>& scene) {
+void SceneOpener::Show(const SceneSnapshot& snapshot, const std::string& why) {
   parts_.edits->ClearHistory();
-  parts_.live->Show(scene, {}, false);
-  parts_.paths->Clear();  // paths of the previous product, whose last frame has come
+  parts_.live->Show(snapshot.scene, snapshot.state, false, why);
+  if (why.empty()) {
+    parts_.paths->Clear();  // paths of the previous product, whose last frame has come
+  }
   parts_.edits->PublishHistory();
 }
 
@@ -143,10 +142,8 @@ void SceneOpener::ShowWhole() {
     return;
   }
   const SceneSnapshot before = parts_.live->MakeRestingSnapshot();
-  parts_.edits->ClearHistory();
-  parts_.live->Show(whole, CarryOver(before.state, *before.scene->model, *whole->model), false,
-                    "all parts are ready");
-  parts_.edits->PublishHistory();
+  Show({whole, CarryOver(before.state, *before.scene->model, *whole->model)},
+       "all parts are ready");
 }
 
 SceneSnapshot SceneOpener::RestoreWork(const SavedWork& kept,

@@ -71,8 +71,9 @@ class SceneOpener final : public SceneObserver {
   /** @param kept  Saved work to resume; null: none. */
   void DoOpen(const std::filesystem::path& file, const std::string& name, When when,
               const SavedWork* kept);
-  /** Shows a scene in which only the first parts are ready. */
-  void ShowFirst(const std::shared_ptr<const OpenScene>& scene);
+  /** Shows a scene, with which the list of edits begins anew.
+   @param why  As of LiveScene::Show. */
+  void Show(const SceneSnapshot& snapshot, const std::string& why = "");
   /** Shows the scene that waits for it, unless a hand holds a part: then when it lets go. */
   void ShowWhole();
   /** Restores saved work on a scene that has been opened; where it does not fit, the scene as

@@ -31,35 +31,15 @@ class PinInBottle : public ::testing::Test {
   void SetUp() override {
     ObjText obj(32, 6);
     obj.AddObject("bottle");
-    const auto bottom = obj.AddCircle(15, 0, 0);
-    const auto shoulder = obj.AddCircle(15, 30, 0);
-    const auto mouth = obj.AddCircle(5, 30, 0);
-    const auto neck = obj.AddCircle(5, 27, 0);
-    const auto ceiling = obj.AddCircle(10, 27, 0);
-    const auto floor = obj.AddCircle(10, 3, 0);
-    obj.AddCap(bottom, false);
-    obj.AddBand(bottom, shoulder);
-    obj.AddBand(shoulder, mouth);
-    obj.AddBand(mouth, neck);
-    obj.AddBand(neck, ceiling);
-    obj.AddBand(ceiling, floor);
-    obj.AddCap(floor, true);
-    AddDisc("pin", 10, 3, 15, &obj);
-    AddDisc("lid", 12, 30, 34, &obj);
+    obj.AddTurned({{15, 0}, {15, 30}, {5, 30}, {5, 27}, {10, 27}, {10, 3}}, 0);
+    obj.AddObject("pin");
+    obj.AddTurned({{10, 3}, {10, 15}}, 0);
+    obj.AddObject("lid");
+    obj.AddTurned({{12, 30}, {12, 34}}, 0);
     file_ = folder_.Write("bottle.obj", obj.text()).string();
     (void)folder_.Write("bottle.hvas.json",
                         R"({"format": "hvas-assignments-2",
                             "fits": [{"hole": "bottle", "shaft": "pin", "fit": "H7/p6"}]})");
-  }
-
-  static void AddDisc(const std::string& name, double radius_mm, double low_mm, double high_mm,
-                      ObjText* obj) {
-    obj->AddObject(name);
-    const auto under = obj->AddCircle(radius_mm, low_mm, 0);
-    const auto over = obj->AddCircle(radius_mm, high_mm, 0);
-    obj->AddCap(under, false);
-    obj->AddBand(under, over);
-    obj->AddCap(over, true);
   }
 
   [[nodiscard]] std::string In(const char* name) const { return (folder_ / name).string(); }

@@ -121,15 +121,7 @@ class TrianglePegTest : public ::testing::TestWithParam<Tessellation> {
     obj.AddBand(hole_1, hole_0);
     obj.AddBand(hole_0, outline_0);
     obj.AddObject("pin");
-    const auto end = obj.AddCircle(4.99, 0, 0.5);
-    const auto neck = obj.AddCircle(4.99, 10, 0.5);
-    const auto collar = obj.AddCircle(8, 10, 0.5);
-    const auto top = obj.AddCircle(8, 14, 0.5);
-    obj.AddCap(end, false);
-    obj.AddBand(end, neck);
-    obj.AddBand(neck, collar);
-    obj.AddBand(collar, top);
-    obj.AddCap(top, true);
+    obj.AddTurned({{4.99, 0}, {4.99, 10}, {8, 10}, {8, 14}}, 0.5);
     file_ = folder_.Write("peg.obj", obj.text()).string();
   }
 

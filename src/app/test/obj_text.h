@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -26,6 +27,20 @@ class ObjText {
       ring.push_back(AddVertex(radius_mm * std::cos(angle), radius_mm * std::sin(angle), z_mm));
     }
     return ring;
+  }
+
+  /** A body between these circles, from the one below to the one above, each with a radius and a
+   height [mm]; closed by the first and the last of them. @param turn  In segments. */
+  void AddTurned(const std::vector<std::array<double, 2>>& circles_mm, double turn) {
+    std::vector<std::vector<int>> rings;
+    for (const auto& [radius_mm, z_mm] : circles_mm) {
+      rings.push_back(AddCircle(radius_mm, z_mm, turn));
+    }
+    AddCap(rings.front(), false);
+    for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
+      AddBand(rings[i], rings[i + 1]);
+    }
+    AddCap(rings.back(), true);
   }
 
   /** The outline of a square, with a point for each one of a circle in it. */

@@ -14,7 +14,6 @@
 #include "simulation/disassembly_run.h"
 #include "simulation/order_search.h"
 #include "simulation/step_check.h"
-#include "simulation/test/cell_parts.h"
 #include "simulation/test/session.h"
 #include "simulation/test/small_products.h"
 
@@ -53,7 +52,7 @@ contact::ShapeSource MakeSolid(const std::vector<Box>& full, const std::vector<B
   for (const Box& box : empty) {
     solid.Set(kMm * box.low_mm, kMm * box.high_mm, false);
   }
-  return testing::MakeSource(solid);
+  return testing::SortByFace(solid.Make());
 }
 
 void PlaceSolid(Product* product, const std::string& name, const Pose& X_WP,

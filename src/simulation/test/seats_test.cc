@@ -90,29 +90,13 @@ std::vector<MateKind> KindsOf(const Product& product) {
   return kinds;
 }
 
-/** The same shape with the triangles of each face one after the other, as parts have them. */
-contact::ShapeSource SortByFace(const contact::ShapeSource& source) {
-  contact::ShapeSource sorted = source;
-  sorted.triangles.clear();
-  sorted.triangle_face.clear();
-  for (std::uint32_t face = 0; face < source.faces.size(); ++face) {
-    for (std::size_t t = 0; t < source.triangles.size(); ++t) {
-      if (source.triangle_face[t] == face) {
-        sorted.triangles.push_back(source.triangles[t]);
-        sorted.triangle_face.push_back(face);
-      }
-    }
-  }
-  return sorted;
-}
-
 /** A frame on a floor, and a block in its window with this clearance between opposite walls. */
 Product BlockInWindow(double clearance) {
   Product product;
   product.name = "rig";
   const auto frame = testing::AddPart(
       &product, "frame",
-      SortByFace(contact::testing::Frame(Vec3(20e-3, 15e-3, 10e-3), {8e-3, 5e-3})));
+      testing::SortByFace(contact::testing::Frame(Vec3(20e-3, 15e-3, 10e-3), {8e-3, 5e-3})));
   const auto floor =
       testing::AddPart(&product, "floor", contact::testing::Block(Vec3(15e-3, 12e-3, 2e-3)));
   const double play = 0.5 * clearance;

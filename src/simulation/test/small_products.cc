@@ -55,6 +55,21 @@ product::Face MeasureFace(const product::Mesh& mesh, std::uint32_t first, std::u
 
 }  // namespace
 
+contact::ShapeSource SortByFace(const contact::ShapeSource& source) {
+  contact::ShapeSource sorted = source;
+  sorted.triangles.clear();
+  sorted.triangle_face.clear();
+  for (std::uint32_t face = 0; face < source.faces.size(); ++face) {
+    for (std::size_t t = 0; t < source.triangles.size(); ++t) {
+      if (source.triangle_face[t] == face) {
+        sorted.triangles.push_back(source.triangles[t]);
+        sorted.triangle_face.push_back(face);
+      }
+    }
+  }
+  return sorted;
+}
+
 PartId AddPart(Product* product, const std::string& name, const contact::ShapeSource& source) {
   product::Part part;
   part.id = PartId(product->parts.size());

@@ -15,6 +15,9 @@ using product::PartId;
 using product::Product;
 using spatial::Pose;
 
+/** Sorts the triangles of a shape by their faces, as parts have them. */
+contact::ShapeSource SortByFace(const contact::ShapeSource& source);
+
 /** Adds a shape as a steel part with faces, features, mass, centre and inertia of its mesh. */
 PartId AddPart(Product* product, const std::string& name, const contact::ShapeSource& source);
 

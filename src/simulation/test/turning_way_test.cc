@@ -9,14 +9,12 @@
 
 #include "planning/test/pairs.h"
 #include "simulation/screw_mates.h"
-#include "simulation/test/cell_parts.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::simulation {
 namespace {
 
 using planning::testing::CellSolid;
-using testing::MakeSource;
 using testing::OccurrenceId;
 using testing::Pose;
 using testing::Product;
@@ -37,8 +35,10 @@ Product KeyInPlate() {
   key.Set(Vec3(-1e-3, -1, -1), Vec3(1e-3, 1, -0.3e-3));     // Bit.
   key.Set(Vec3(-1e-3, -1e-3, -1), Vec3(1e-3, 1e-3, 1));     // Shaft.
   key.Set(Vec3(-4e-3, -4e-3, 12e-3), Vec3(4e-3, 4e-3, 1));  // Handle.
-  testing::Place(&product, testing::AddPart(&product, "plate", MakeSource(plate)), "plate");
-  testing::Place(&product, testing::AddPart(&product, "key", MakeSource(key)), "key");
+  testing::Place(&product, testing::AddPart(&product, "plate", testing::SortByFace(plate.Make())),
+                 "plate");
+  testing::Place(&product, testing::AddPart(&product, "key", testing::SortByFace(key.Make())),
+                 "key");
   testing::Complete(&product);
   return product;
 }
