@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "mates/place_bodies.h"
+#include "simulation/base_choice.h"
 #include "simulation/narrow_hole.h"
 #include "simulation/overlap_search.h"
 #include "simulation/way_directions.h"
@@ -103,10 +104,6 @@ void Extraction::SetUnit(const Unit& unit, bool is_in_unit) {
   for (const OccurrenceId id : unit) {
     is_in_unit_[id.index()] = is_in_unit;
   }
-}
-
-double SizeOf(const product::Part& part) {
-  return part.mass.volume > 0 ? part.mass.volume : part.box_B.size().prod();
 }
 
 double Extraction::SizeOf(OccurrenceId id) const {

@@ -22,9 +22,6 @@ using Unit = std::vector<product::OccurrenceId>;
 /** The parts that move in a step, the leading one first. */
 [[nodiscard]] Unit UnitOf(const SequenceStep& step);
 
-/** Volume, or that of the box of a part without one [m^3]. */
-[[nodiscard]] double SizeOf(const product::Part& part);
-
 /** A part that stands in the way of a unit along a direction. */
 struct Obstacle {
   product::OccurrenceId occurrence;  ///< Invalid: the table.
@@ -77,7 +74,7 @@ class Extraction {
 
   void SetPresent(const Unit& unit, bool is_present);
 
-  /** The size of a part [m^3], as the function above has it. */
+  /** The size of a part [m^3], as base_choice.h has it. */
   [[nodiscard]] double SizeOf(product::OccurrenceId id) const;
 
   [[nodiscard]] std::string Describe(product::OccurrenceId id) const;

@@ -10,6 +10,7 @@
 
 #include "mates/mate_kind.h"
 #include "simulation/extraction.h"
+#include "simulation/way_directions.h"
 #include "sweep/path.h"
 
 namespace hvas::simulation {

@@ -6,7 +6,8 @@
 #include <set>
 
 #include "product/accessories.h"
-#include "simulation/extraction.h"
+#include "simulation/base_choice.h"
+#include "simulation/neighbours.h"
 
 namespace hvas::simulation {
 namespace {
@@ -35,29 +36,31 @@ FirstParts ChooseFirstParts(const product::Product& product) {
   if (HasAccessories(product)) {
     return {};  // Tools and fixtures are there from the beginning.
   }
-  const auto largest =
-      std::max_element(product.occurrences.begin(), product.occurrences.end(),
-                       [&product](const product::Occurrence& a, const product::Occurrence& b) {
-                         return SizeOf(product.part_of(a.id)) < SizeOf(product.part_of(b.id));
-                       });
-  if (largest == product.occurrences.end()) {
+  if (product.occurrences.empty()) {
     return {};
   }
-  std::set<PartId> joined;
-  for (const product::Mate& mate : product.mates) {
-    const OccurrenceId a = mate.a.occurrence;
-    const OccurrenceId b = mate.b.occurrence;
-    if (a == largest->id || b == largest->id) {
-      joined.insert(product.occurrences[(a == largest->id ? b : a).index()].part);
-    }
+  const auto smaller = [&product](OccurrenceId a, OccurrenceId b) {
+    return SizeOf(product.part_of(a)) < SizeOf(product.part_of(b));
+  };
+  std::vector<OccurrenceId> by_size;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    by_size.push_back(occurrence.id);
   }
-  joined.erase(largest->part);
+  std::stable_sort(by_size.begin(), by_size.end(), smaller);
+  const Neighbours mated = FindMated(product, {});
+  FirstParts first;
+  first.base = ChooseBase(product, by_size, mated);
+  const PartId base_part = product.occurrences[first.base.index()].part;
+  std::set<PartId> joined;
+  for (const OccurrenceId id : mated[first.base.index()]) {
+    joined.insert(product.occurrences[id.index()].part);
+  }
+  joined.erase(base_part);
   std::vector<PartId> smallest_first(joined.begin(), joined.end());
   std::stable_sort(smallest_first.begin(), smallest_first.end(),
                    [&](PartId a, PartId b) { return count_triangles(a) < count_triangles(b); });
-  FirstParts first;
   std::size_t taken = 0;
-  const double most = kMostOfOthers * static_cast<double>(all - count_triangles(largest->part));
+  const double most = kMostOfOthers * static_cast<double>(all - count_triangles(base_part));
   for (const PartId id : smallest_first) {
     if (static_cast<double>(taken + count_triangles(id)) > most) {
       break;
@@ -66,9 +69,9 @@ FirstParts ChooseFirstParts(const product::Product& product) {
     first.parts.push_back(id);
   }
   if (!first.parts.empty()) {
-    first.parts.push_back(largest->part);
+    first.parts.push_back(base_part);
     first.share =
-        static_cast<double>(taken + count_triangles(largest->part)) / static_cast<double>(all);
+        static_cast<double>(taken + count_triangles(base_part)) / static_cast<double>(all);
   }
   return first;
 }

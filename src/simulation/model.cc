@@ -547,8 +547,9 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
  and without reasons for what finds no way without the others. */
 Result<std::shared_ptr<const Model>> CompileFirst(
     const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
-    const CompileOptions& options) {
+    product::OccurrenceId base, const CompileOptions& options) {
   CompileOptions first;
+  first.base = options.base.empty() ? product->occurrences[base.index()].path : options.base;
   first.seed = options.seed;
   first.pairs = options.pairs;
   first.shape.stop = options.shape.stop;
@@ -581,7 +582,7 @@ Result<void> BuildAllShapes(const std::shared_ptr<const product::Product>& produ
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
     if (taken * (1 - first.share) >= options.least_gain * first.share) {
-      if (const auto model = CompileFirst(product, *shapes, options)) {
+      if (const auto model = CompileFirst(product, *shapes, first.base, options)) {
         options.on_first_parts(*model);
         // One core is left to whoever begins.
         const unsigned cores = std::max(1U, std::thread::hardware_concurrency());

@@ -107,37 +107,65 @@ class CutSearch {
   int trees_{0};
 };
 
+/** Joins parts, but for those that are absent. */
+class NeighbourList {
+ public:
+  NeighbourList(std::size_t count, const std::vector<OccurrenceId>& absent)
+      : absent_(absent), neighbours_(count) {}
+
+  void Connect(OccurrenceId a, OccurrenceId b) {
+    if (a != b && !IsAbsent(a) && !IsAbsent(b)) {
+      neighbours_[a.index()].push_back(b);
+      neighbours_[b.index()].push_back(a);
+    }
+  }
+
+  void ConnectMated(const product::Product& product) {
+    for (const product::Mate& mate : product.mates) {
+      if (!mates::IsContradicted(product, mate)) {
+        Connect(mate.a.occurrence, mate.b.occurrence);
+      }
+    }
+  }
+
+  /** Sorted, each one once. */
+  Neighbours Take() {
+    for (std::vector<OccurrenceId>& list : neighbours_) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    return std::move(neighbours_);
+  }
+
+ private:
+  [[nodiscard]] bool IsAbsent(OccurrenceId id) const {
+    return std::find(absent_.begin(), absent_.end(), id) != absent_.end();
+  }
+
+  const std::vector<OccurrenceId>& absent_;
+  Neighbours neighbours_;
+};
+
 }  // namespace
+
+Neighbours FindMated(const product::Product& product, const std::vector<OccurrenceId>& absent) {
+  NeighbourList list(product.occurrences.size(), absent);
+  list.ConnectMated(product);
+  return list.Take();
+}
 
 Neighbours FindNeighbours(const product::Product& product, const contact::Scene& scene,
                           const std::vector<OccurrenceId>& absent) {
-  Neighbours neighbours(product.occurrences.size());
-  const auto is_absent = [&absent](OccurrenceId id) {
-    return std::find(absent.begin(), absent.end(), id) != absent.end();
-  };
-  const auto connect = [&](OccurrenceId a, OccurrenceId b) {
-    if (a != b && !is_absent(a) && !is_absent(b)) {
-      neighbours[a.index()].push_back(b);
-      neighbours[b.index()].push_back(a);
-    }
-  };
-  for (const product::Mate& mate : product.mates) {
-    if (!mates::IsContradicted(product, mate)) {
-      connect(mate.a.occurrence, mate.b.occurrence);
-    }
-  }
+  NeighbourList list(product.occurrences.size(), absent);
+  list.ConnectMated(product);
   contact::QueryWorkspace workspace;
   for (const product::Occurrence& occurrence : product.occurrences) {
     const contact::BodyId self(occurrence.id.index());
     for (const contact::BodyId body : ListTouched(scene, self, &workspace)) {
-      connect(occurrence.id, OccurrenceId(body.index()));
+      list.Connect(occurrence.id, OccurrenceId(body.index()));
     }
   }
-  for (std::vector<OccurrenceId>& list : neighbours) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return neighbours;
+  return list.Take();
 }
 
 std::vector<OccurrenceId> ListCutParts(const std::vector<OccurrenceId>& parts,

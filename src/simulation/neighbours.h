@@ -10,6 +10,10 @@ namespace hvas::simulation {
 /** Parts that hold each part in the assembled product, sorted; indexed by OccurrenceId. */
 using Neighbours = std::vector<std::vector<product::OccurrenceId>>;
 
+/** Finds for each part the parts that it has a mate with. @param absent  As of FindNeighbours(). */
+[[nodiscard]] Neighbours FindMated(const product::Product& product,
+                                   const std::vector<product::OccurrenceId>& absent);
+
 /** Finds for each part the parts that it has a mate with, or touches as drawn to 0.1 mm.
  @param scene  All parts at their drawn poses; body index = occurrence index.
  @param absent  Parts that hold nothing and are not held. */

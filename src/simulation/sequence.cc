@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/base_choice.h"
 #include "simulation/blocking_graph.h"
 #include "simulation/extraction.h"
 
@@ -281,30 +282,9 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
 }
 
 OccurrenceId Planner::ChooseBase(const Unit& rest) const {
-  if (std::find(rest.begin(), rest.end(), input_.base) != rest.end()) {
-    return input_.base;
-  }
-  // What most is joined to, where the largest is joined to little: a propeller's motor. Choices.
-  constexpr std::size_t kTimesAsMany = 3;
-  constexpr double kLeastSize = 0.1;  // Share of the largest one's volume.
-  const auto count_joined = [&](OccurrenceId id) {
-    const std::vector<OccurrenceId>& others = neighbours_[id.index()];
-    return static_cast<std::size_t>(
-        std::count_if(others.begin(), others.end(), [&rest](OccurrenceId other) {
-          return std::find(rest.begin(), rest.end(), other) != rest.end();
-        }));
-  };
-  const OccurrenceId largest = rest.back();
-  OccurrenceId base = largest;
-  std::size_t most = kTimesAsMany * std::max<std::size_t>(1, count_joined(largest));
-  for (const OccurrenceId id : rest) {
-    const std::size_t joined = count_joined(id);
-    if (joined >= most && extraction_.SizeOf(id) >= kLeastSize * extraction_.SizeOf(largest)) {
-      base = id;
-      most = joined;
-    }
-  }
-  return base;
+  return std::find(rest.begin(), rest.end(), input_.base) != rest.end()
+             ? input_.base
+             : simulation::ChooseBase(product_, rest, neighbours_);
 }
 
 void Planner::PlanLevel(Unit rest, Sequence* sequence) {

@@ -21,17 +21,40 @@ Json MakeResumedEvent(const SceneSnapshot& begun) {
           {"edits", begun.scene->edits.size()}};
 }
 
+/** Is nothing in its place but the parts that everything else is put onto, and fixtures? */
+bool AreOnlyBasesPlaced(const LiveState& state, const simulation::Model& model) {
+  using Kind = simulation::SequenceStep::Kind;
+  std::size_t built_on = 0;
+  for (const simulation::SequenceStep& step : model.sequence.steps) {
+    built_on += step.kind == Kind::kBase &&
+                        state.parts[step.occurrence.index()].placement == Placement::kPlaced
+                    ? 1
+                    : 0;
+  }
+  std::size_t placed = 0;
+  for (std::size_t i = 0; i < state.parts.size(); ++i) {
+    placed += state.parts[i].placement == Placement::kPlaced &&
+                      model.bodies[i].role == simulation::BodyRole::kPart
+                  ? 1
+                  : 0;
+  }
+  return placed == built_on;
+}
+
 /** The state of parts with the model in which all are ready: those that have not been touched lie
- where it has them. */
+ where it has them, and so does the base as long as nothing was put onto it: it may be another one.
+ */
 LiveState CarryOver(LiveState state, const simulation::Model& before,
                     const simulation::Model& after) {
+  const bool is_untouched = AreOnlyBasesPlaced(state, before);
   for (std::size_t i = 0; i < state.parts.size(); ++i) {
     simulation::PartState& part = state.parts[i];
     const simulation::Body& body = after.bodies[i];
     const bool is_where_it_was =
         part.X_WB.p() == before.bodies[i].X_WB_start.p() && !part.leader.is_valid();
     const bool is_table_elsewhere = before.table_z != after.table_z;
-    if (part.placement == Placement::kPending ||
+    const bool was_base = is_untouched && part.placement == Placement::kPlaced;
+    if (part.placement == Placement::kPending || was_base ||
         (part.placement == Placement::kLoose && (is_where_it_was || is_table_elsewhere))) {
       part = {simulation::BeginningOf(body.role), body.X_WB_start};
     }

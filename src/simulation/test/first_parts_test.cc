@@ -68,6 +68,8 @@ TEST(CompileInStagesTest, TheFirstPartsCanBePutTogetherBeforeTheOthersAreReady) 
   EXPECT_EQ(CountPending(first), 1u);
   EXPECT_EQ(first.bodies[kCollarIndex].role, BodyRole::kPending);
   EXPECT_TRUE(first.sequence.gaps.empty());
+  EXPECT_EQ(first.sequence.steps.front().occurrence,
+            compiled.whole->sequence.steps.front().occurrence);
   ASSERT_EQ(first.sequence.steps.size(), 2u);
   EXPECT_EQ(first.sequence.steps[0].occurrence, OccurrenceId(kBlockIndex));
   EXPECT_EQ(first.sequence.steps[1].occurrence, OccurrenceId(kPegIndex));
