@@ -116,6 +116,8 @@ class FitForce {
   /** S at the N + 1 stations from the mouth to L [m]. */
   [[nodiscard]] std::span<const double> clearances() const noexcept { return clearance_; }
 
+  [[nodiscard]] const FitFriction& friction() const noexcept { return friction_; }
+
   /** d_s, actual [m]. */
   [[nodiscard]] double shaft_diameter() const noexcept { return shaft_diameter_; }
 

@@ -320,7 +320,8 @@ void ConstraintSolver::RelaxRolling(PatchRows* patch) noexcept {
 
 spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
   Factor();
-  V_[0] = factor_.solve(rhs_);
+  V_free_ = factor_.solve(rhs_);
+  V_[0] = V_free_;
   const std::span<ContactRows> contacts(contacts_.data(), static_cast<std::size_t>(contact_count_));
   const std::span<PatchRows> patches(patches_.data(), static_cast<std::size_t>(patch_count_));
   for (ContactRows& rows : contacts) {
@@ -333,6 +334,7 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
     PrepareRow({bounded_body_[i], kWorld}, &bounded_[i]);
   }
   constexpr double kConverged = 1e-9;  // [m/s or rad/s]: a nanometre a second. A choice.
+  constexpr int kFirstSweeps = 8;  // Until what each contact does is as good as known: a choice.
   for (int sweep = 0; sweep < iterations; ++sweep) {
     const std::array<Vec6, kMaxBodies> before = V_;
     RelaxBounded();
@@ -350,7 +352,8 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
     for (std::size_t i = 0; i < body_count_; ++i) {
       change = std::max(change, (V_[i] - before[i]).squaredNorm());
     }
-    if (change < kConverged * kConverged) {
+    if (change < kConverged * kConverged ||
+        ((sweep + 1 == kFirstSweeps || sweep + 1 == iterations) && SolveDirectly())) {
       break;
     }
   }

@@ -198,6 +198,11 @@ class ConstraintSolver {
   void PrepareRolling(PatchRows* patch) noexcept;
   [[nodiscard]] double Velocity(const Pair& pair, const Row& row) const noexcept;
   void Push(const Pair& pair, const Row& row, double change) noexcept;
+  class DirectSolution;
+
+  /** Solves few contacts at once, from what the sweeps have found. False where that is not
+   possible; nothing changes then. */
+  [[nodiscard]] bool SolveDirectly() noexcept;
   void RelaxBounded() noexcept;
   void RelaxNormal(ContactRows* rows) noexcept;
   void RelaxFriction(ContactRows* rows) noexcept;
@@ -215,6 +220,7 @@ class ConstraintSolver {
   Vec6 rhs_{Vec6::Zero()};
   Eigen::LLT<Mat6> factor_;
   bool is_factored_{false};
+  Vec6 V_free_{Vec6::Zero()};  ///< Of body 0, without any row.
   double dt_{1e-3};
   std::array<Vec6, kMaxBodies> V_;
   std::array<Mat6, kMaxBodies> inverse_;

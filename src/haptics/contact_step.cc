@@ -282,19 +282,78 @@ void ContactStep::MoveTurned(const ConstraintSolver& solver) noexcept {
   }
 }
 
+/** @returns false where there is no room for it. */
+bool ContactStep::AddContact(const TouchingBody& body, const TouchingBody& other,
+                             const fits::FrictionLaw& law, double compliance, double rolling_arm,
+                             const contact::Contact& c, ConstraintSolver* solver) noexcept {
+  const ContactOptions& options = options_.contact;
+  const double settling = options_.dt + options.settling_time;
+  const auto index = static_cast<std::size_t>(solver->contact_count());
+  ConstraintSolver::Contact contact;
+  contact.patch = friction_.AddPair(body, other, law, rolling_arm, solver);
+  // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper than
+  // a lasting load.
+  const double time = c.distance > 0 ? options_.dt : settling;
+  contact.velocity_bias = -std::max(c.distance, -options.max_depth) / time;
+  contact.compliance = compliance * options_.dt / settling;
+  contact.recovery_speed = options.recovery_speed;
+  if (contact.patch < 0 || !friction_.AddContact(c, contact, solver)) {
+    account_.is_truncated = true;
+    return false;
+  }
+  contacts_[index] = c;
+  return true;
+}
+
+/** Contacts of shafts with play in their holes. Each mate has friction of its own, that of its fit.
+ */
+void ContactStep::AddBores(const DisplayedPart& displayed, double margin,
+                           ConstraintSolver* solver) noexcept {
+  constexpr std::uint32_t kFirstBore = 0x80000000U;  // Ids beyond those of bodies.
+  // Stiffness along a surface as a share of that into it, 2 (1 - nu) / (2 - nu) with nu = 0.3:
+  // Mindlin, J. Appl. Mech. 16, 1949.
+  constexpr double kTangentialShare = 0.82;
+  const HeldPart& part = *displayed.part;
+  const std::size_t count = std::min(part.mates.size(), MateGuide::kMaxMates);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!guide_.is_bore(i)) {
+      continue;
+    }
+    const HeldMate& mate = part.mates[i];
+    const fits::FitFriction& friction = mate.fit->friction();
+    fits::FrictionLaw law{friction.release, friction.slip};
+    // Of two contacts, which bear a tilted shaft together.
+    law.stiffness = 2 * kTangentialShare / options_.contact.compliance;
+    TouchingBody bore;
+    bore.id = kFirstBore + static_cast<std::uint32_t>(i);
+    BoreContacts found;
+    const std::size_t found_count = guide_.CalcContacts(mate, i, displayed.X_WD, margin, &found);
+    for (const BoreContact& one : std::span(found.data(), found_count)) {
+      contact::Contact c;
+      c.body = mate.body;
+      c.p_WC = one.p_WC;
+      c.nhat_W = one.nhat_W;
+      c.distance = one.distance;
+      account_.deepest = std::min(account_.deepest, c.distance);
+      if (!AddContact({0, part.body.value(), displayed.X_WD}, bore, law,
+                      options_.contact.compliance, 0, c, solver)) {
+        return;
+      }
+    }
+  }
+}
+
 /** @param queried  The body whose shape was queried: `body`, or a member of what is held. */
 void ContactStep::AddQueried(const TouchingBody& body, contact::BodyId queried,
                              fits::FrictionSurface surface, double rolling_arm,
                              ConstraintSolver* solver) noexcept {
   const ContactOptions& options = options_.contact;
-  const double settling = options_.dt + options.settling_time;
   account_.is_truncated = account_.is_truncated || workspace_.stats().is_truncated;
   account_.points_tested += workspace_.stats().points_tested;
   for (const contact::Contact& c : workspace_.contacts()) {
     if (body.index == 0 && IsMovedByOther(c.body)) {
       continue;  // its hand's step has this part as a body
     }
-    const auto index = static_cast<std::size_t>(solver->contact_count());
     const TouchingBody other = Touch(c, solver);
     const BodyProperties* properties = bodies_.properties(c.body);
     fits::FrictionLaw law = fits::FindFriction(
@@ -306,19 +365,9 @@ void ContactStep::AddQueried(const TouchingBody& body, contact::BodyId queried,
     }
     const double compliance =
         stated != nullptr ? stated->compliance.value_or(options.compliance) : options.compliance;
-    ConstraintSolver::Contact contact;
-    contact.patch = friction_.AddPair(body, other, law, rolling_arm, solver);
-    // A spring with a dashpot: F = (-phi - settling_time phi') / c. A blow sinks in no deeper than
-    // a lasting load.
-    const double time = c.distance > 0 ? options_.dt : settling;
-    contact.velocity_bias = -std::max(c.distance, -options.max_depth) / time;
-    contact.compliance = compliance * options_.dt / settling;
-    contact.recovery_speed = options.recovery_speed;
-    if (contact.patch < 0 || !friction_.AddContact(c, contact, solver)) {
-      account_.is_truncated = true;
+    if (!AddContact(body, other, law, compliance, rolling_arm, c, solver)) {
       break;
     }
-    contacts_[index] = c;
   }
 }
 
@@ -347,6 +396,7 @@ void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
                member == 0 ? part.body : part.members[member - 1].body, part.surface, 0, solver);
   }
   clearance_ = std::min(margin, account_.deepest);
+  AddBores(displayed, margin, solver);
   held_contacts_ = solver->contact_count();
   unmet_ = {};
 }

@@ -181,6 +181,10 @@ class ContactStep {
   void MoveTurned(const ConstraintSolver& solver) noexcept;
   void AddQueried(const TouchingBody& body, contact::BodyId queried, fits::FrictionSurface surface,
                   double rolling_arm, ConstraintSolver* solver) noexcept;
+  void AddBores(const DisplayedPart& displayed, double margin, ConstraintSolver* solver) noexcept;
+  bool AddContact(const TouchingBody& body, const TouchingBody& other, const fits::FrictionLaw& law,
+                  double compliance, double rolling_arm, const contact::Contact& c,
+                  ConstraintSolver* solver) noexcept;
   void AddOtherPart(ConstraintSolver* solver) noexcept;
   [[nodiscard]] double CalcOtherSpeed() const noexcept;
   void PushOtherPart(const ConstraintSolver& solver) noexcept;

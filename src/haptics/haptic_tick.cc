@@ -23,10 +23,17 @@ double CalcVirtualMass(const HeldPart& part, const TickOptions& options) noexcep
   return std::clamp(part.mass, kMinVirtualMass, options.max_virtual_mass);
 }
 
+/** Without contact, or without the forces of fits, guidance holds a shaft in its hole as well. */
+TickOptions WithGuidance(TickOptions options) noexcept {
+  options.guidance.contact_in_holes = options.guidance.contact_in_holes && options.renders_fits &&
+                                      options.condition != Condition::kConstraint;
+  return options;
+}
+
 }  // namespace
 
 HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene, HandRole role) noexcept
-    : options_(options),
+    : options_(WithGuidance(options)),
       scene_(*scene),
       workspace_(options.workspace),
       force_map_(MakeForceMap(options.device)),

@@ -31,10 +31,11 @@ struct HeldMate {
   spatial::Pose X_BN;     ///< Connector of the held side. z as X_WM's (axes) or opposed (planes).
   std::size_t member{0};  ///< Whose face it is: 0 for the part itself, else members[member - 1].
   mates::CaptureMate capture;  ///< Kind and spans, for recognition.
-  double radius{0};     ///< Nominal, of the hole; half the width of a slot [m]; 0 for planes.
-  double breadth{0};    ///< Prismatic: of the contact across its way [m]; else 0.
-  double shift{0};      ///< Prismatic: z of the held side from the middle, as drawn [m].
-  bool is_stop{false};  ///< A plane that ends the insertion, not one that guides it.
+  double radius{0};      ///< Nominal, of the hole; half the width of a slot [m]; 0 for planes.
+  double breadth{0};     ///< Prismatic: of the contact across its way [m]; else 0.
+  double shift{0};       ///< Prismatic: z of the held side from the middle, as drawn [m].
+  bool has_shaft{true};  ///< Axis-hole: the held side is the shaft, not the hole.
+  bool is_stop{false};   ///< A plane that ends the insertion, not one that guides it.
   std::shared_ptr<const fits::FitForce> fit;          ///< Null for planes and threads.
   fits::FitKind fit_kind{fits::FitKind::kClearance};  ///< Says which factor of PaperFactors counts.
   contact::BodyId body;                               ///< The placed part in the scene.

@@ -80,6 +80,12 @@ bool ReplacesContact(const HeldMate& mate) noexcept {
          (mate.capture.kind == MateKind::kFaceFace && !mate.is_stop);
 }
 
+/** True where a shaft with play touches its hole as contact has it, once it is in. */
+bool AnswersByContact(const HeldMate& mate) noexcept {
+  return mate.capture.kind == MateKind::kAxisHole && mate.fit != nullptr &&
+         mate.fit_kind == fits::FitKind::kClearance;
+}
+
 /** Where the hand wants the part, but no further in than its place: whoever pushes on a part that
  is there does not want it to come out. */
 spatial::Pose WithoutOvershoot(const HeldPart& part, const spatial::Pose& X_WT) noexcept {
@@ -214,6 +220,53 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
       insertion_depth_ = std::max(insertion_depth_, g.engaged);
     }
   }
+  ChooseBores(part, options);
+}
+
+void MateGuide::ChooseBores(const HeldPart& part, const GuidanceOptions& options) noexcept {
+  const std::size_t count = std::min(part.mates.size(), kMaxMates);
+  std::size_t bores = 0;
+  const auto is_possible = [&](std::size_t i) {
+    const MateState& state = mates_[i];
+    const MateGeometry& g = state.geometry;
+    return options.contact_in_holes && state.is_aligned && g.engaged > 0 &&
+           AnswersByContact(part.mates[i]) && part.mates[i].fit->CalcRadialPlay(g.engaged) > 0;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    mates_[i].is_bore = mates_[i].is_bore && is_possible(i);
+    bores += mates_[i].is_bore ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < count && bores < kMaxBores; ++i) {
+    if (!mates_[i].is_bore && is_possible(i)) {
+      mates_[i].is_bore = true;
+      ++bores;
+    }
+  }
+}
+
+std::size_t MateGuide::CalcContacts(const HeldMate& mate, std::size_t i, const spatial::Pose& X_WB,
+                                    double margin, BoreContacts* contacts) const noexcept {
+  const spatial::Pose X_WN = X_WB * mate.X_BN;
+  const mates::CaptureMate& spans = mate.capture;
+  Bore bore;
+  bore.hole_radius = mate.radius;
+  bore.shaft_radius = mate.radius - mate.fit->CalcRadialPlay(mates_[i].geometry.engaged);
+  if (mate.has_shaft) {
+    bore.hole_low = spans.placed_low;
+    bore.hole_high = spans.placed_high;
+    bore.shaft_low = spans.held_low;
+    bore.shaft_high = spans.held_high;
+    return CalcBoreContacts(bore, mate.X_WM, X_WN, margin, contacts);
+  }
+  bore.hole_low = spans.held_low;
+  bore.hole_high = spans.held_high;
+  bore.shaft_low = spans.placed_low;
+  bore.shaft_high = spans.placed_high;
+  const std::size_t count = CalcBoreContacts(bore, X_WN, mate.X_WM, margin, contacts);
+  for (std::size_t k = 0; k < count; ++k) {
+    (*contacts)[k].nhat_W *= -1;  // It pushes the hole, which is held.
+  }
+  return count;
 }
 
 void MateGuide::UpdateAlignment(const HeldMate& mate, MateState* state) noexcept {
@@ -242,13 +295,19 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const Mat3 along = g.axis_W * g.axis_W.transpose();
     const Mat3 whole = Mat3::Identity();
     const Mat3 across = whole - along;
+    // In the hole contact takes over, over the depth in which the play opens.
+    const double guided = state.is_bore ? 1 - std::min(1.0, g.engaged / kOpening) : 1;
+    if (guided <= 0) {
+      continue;
+    }
     const double tilt_free = mates::HasFit(mate.capture.kind) ? FreeTilt(mate, g) : 0;
     const double tilt = g.tilt_W.norm();
     if (mates::HoldsDirection(mate.capture.kind) && (tilt > tilt_free || tilt_free == 0)) {
       const double excess = tilt - tilt_free;
-      const double k = Bounded(
-          RampedStiffness(kFirstRotStiffness, FullRotStiffness(mate, g, options.k_rot), state.ramp),
-          excess, options.max_torque);
+      const double k =
+          Bounded(guided * RampedStiffness(kFirstRotStiffness,
+                                           FullRotStiffness(mate, g, options.k_rot), state.ramp),
+                  excess, guided * options.max_torque);
       const double part_of = tilt > 0 ? excess / tilt : 1.0;
       solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
     }
@@ -265,9 +324,10 @@ void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
     const double free = FreeRadius(mate, g);
     const double r = g.distance;
     if (r > free || free == 0) {
-      const double k = Bounded(
-          RampedStiffness(kFirstStiffness, FullStiffness(mate, g, options.k_lin), state.ramp),
-          r - free, options.max_force);
+      const double k =
+          Bounded(guided * RampedStiffness(kFirstStiffness, FullStiffness(mate, g, options.k_lin),
+                                           state.ramp),
+                  r - free, guided * options.max_force);
       const double ratio = r > 0 ? free / r : 0.0;
       const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
       if (g.engaged > 0 && mates::HasFit(mate.capture.kind)) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 
+#include "haptics/bore_contacts.h"
 #include "haptics/constraint_solver.h"
 #include "haptics/fit_rows.h"
 #include "haptics/held_part.h"
@@ -36,6 +37,9 @@ class MateGuide {
  public:
   /** Room for a held subassembly, with all its parts: a choice. */
   static constexpr std::size_t kMaxMates = 96;
+  /** Shafts whose contacts in their holes are calculated at once; further ones are guided there:
+   room in the solver. */
+  static constexpr std::size_t kMaxBores = 4;
   static constexpr std::size_t kPairsPerMate = 2;  ///< Pairs that CollectIgnored fills for a mate.
 
   void Reset() noexcept { mates_.fill({}); }
@@ -70,6 +74,14 @@ class MateGuide {
   std::size_t CollectIgnored(const HeldPart& part, std::span<contact::IgnoredPair> pairs,
                              std::size_t member = 0) const noexcept;
 
+  /** Mates whose shaft is in its hole with play, and touches it where the two are: guidance ends
+   there, and contact answers (N5). */
+  [[nodiscard]] bool is_bore(std::size_t i) const noexcept { return mates_[i].is_bore; }
+
+  /** Contacts of a mate of which is_bore() is true. @returns how many were filled. */
+  std::size_t CalcContacts(const HeldMate& mate, std::size_t i, const spatial::Pose& X_WB,
+                           double margin, BoreContacts* contacts) const noexcept;
+
   /** Sum over aligned fits at their present depths, for a part that slips outwards at a speed
    [m/s]. */
   [[nodiscard]] FitLoad CalcFitLoad(const HeldPart& part, double slip,
@@ -94,11 +106,13 @@ class MateGuide {
   struct MateState {
     bool is_captured{false};
     bool is_aligned{false};  ///< Came onto its axis, and has not left the hole since.
+    bool is_bore{false};     ///< Its shaft is in the hole, and touches it by contact.
     double ramp{0};          ///< 0: no guidance, 1: full stiffness.
     MateGeometry geometry;
   };
 
   static void UpdateAlignment(const HeldMate& mate, MateState* state) noexcept;
+  void ChooseBores(const HeldPart& part, const GuidanceOptions& options) noexcept;
 
   std::array<MateState, kMaxMates> mates_{};
   bool is_near_{false};

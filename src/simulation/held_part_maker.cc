@@ -278,6 +278,7 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
     entry.capture = mates::MakeCaptureMate(mate, id);
     entry.radius = mate.hole_radius;
     entry.breadth = mate.breadth;
+    entry.has_shaft = !is_a;
     if (mate.kind == MateKind::kPrismatic) {
       entry.shift = (is_a ? -1 : 1) * mates::CalcDrawnShift(*model_.product, mate);
     }

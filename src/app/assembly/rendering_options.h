@@ -34,8 +34,8 @@ CLI::Option* AddConditionOption(CLI::App* command, Condition* condition) {
                    "Rendering: contact, mates, or hybrid (both, and the force of the fit)");
 }
 
-/** Adds --k1, --k2, --k3 and --attract-in-fits, the constants of paper X's guidance, to a
- command. */
+/** Adds --k1, --k2, --k3, --attract-in-fits and --guide-in-holes, the constants of paper X's
+ guidance, to a command. */
 inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidance) {
   command
       ->add_option("--k1", guidance->k1,
@@ -54,6 +54,9 @@ inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidan
       ->check(CLI::Range(0.0, haptics::kLargestK3));
   command->add_flag("--attract-in-fits", guidance->attracts_in_fits,
                     "Attraction goes on inside a fitted hole, as in paper X");
+  command->add_flag("--guide-in-holes", guidance->guides_in_holes,
+                    "Mates hold a shaft with play on its axis inside the hole, too, as in the "
+                    "papers: it does not tilt, jam or wedge there");
 }
 
 /** Adds `--sizes one-pair|of-kind|any` to a command. */
