@@ -80,10 +80,11 @@ bool ReplacesContact(const HeldMate& mate) noexcept {
          (mate.capture.kind == MateKind::kFaceFace && !mate.is_stop);
 }
 
-/** True where a shaft with play touches its hole as contact has it, once it is in. */
+/** True where a shaft touches its hole as contact has it, once it is in: it has play all the way.
+ */
 bool AnswersByContact(const HeldMate& mate) noexcept {
   return mate.capture.kind == MateKind::kAxisHole && mate.fit != nullptr &&
-         mate.fit_kind == fits::FitKind::kClearance;
+         mate.fit->CalcRadialPlay(mate.fit->length()) > 0;
 }
 
 /** Where the hand wants the part, but no further in than its place: whoever pushes on a part that
@@ -230,7 +231,7 @@ void MateGuide::ChooseBores(const HeldPart& part, const GuidanceOptions& options
     const MateState& state = mates_[i];
     const MateGeometry& g = state.geometry;
     return options.contact_in_holes && state.is_aligned && g.engaged > 0 &&
-           AnswersByContact(part.mates[i]) && part.mates[i].fit->CalcRadialPlay(g.engaged) > 0;
+           AnswersByContact(part.mates[i]);
   };
   for (std::size_t i = 0; i < count; ++i) {
     mates_[i].is_bore = mates_[i].is_bore && is_possible(i);
