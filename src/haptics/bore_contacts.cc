@@ -2,10 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace hvas::haptics {
 namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+constexpr double kCosine30 = std::numbers::sqrt3 / 2;
+
+/** @param by  Cosine and sine. */
+Vec2 Turned(const Vec2& u, const Vec2& by) noexcept {
+  return {by.x() * u.x() - by.y() * u.y(), by.y() * u.x() + by.x() * u.y()};
+}
 
 /** The circle of an edge, as it is seen along the axis of the other cylinder. */
 class SeenEdge {
@@ -24,52 +35,52 @@ class SeenEdge {
     // In the circle's plane; seen along the axis, it is shorter by the cosine.
     in_plane_ = is_tilted ? Vec3((u_[0] - sine * normal) / cosine_) : u_[0];
     const Vec3 d = p_WC - p_WA;
-    centre_ = {d.dot(u_[0]), d.dot(u_[1])};
+    centre_ = Vec2(d.dot(u_[0]), d.dot(u_[1]));
   }
 
-  /** h(u) less what it would be about the middle of the circle were it upright, at u = (cos, sin):
-   without the radius, which would cost digits. */
-  [[nodiscard]] double CalcReach(double angle) const noexcept {
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    return c * centre_[0] + s * centre_[1] + radius_ * (std::hypot(cosine_ * c, s) - 1);
+  /** h(u) less the radius, which would cost digits. @param u  Unit, in the plane that is seen. */
+  [[nodiscard]] double CalcReach(const Vec2& u) const noexcept {
+    return centre_.dot(u) + radius_ * (CalcLength(u) - 1);
   }
 
-  /** The angle where `sign` times the reach is largest. */
-  [[nodiscard]] double FindExtreme(double sign) const noexcept {
-    constexpr int kStarts = 12;
-    double best = 0;
+  /** The direction in which `sign` times the reach is largest. */
+  [[nodiscard]] Vec2 FindExtreme(double sign) const noexcept {
+    constexpr int kStarts = 12;  // The reach has at most two maxima.
+    Vec2 best(1, 0);
     double most = -std::numeric_limits<double>::infinity();
+    Vec2 u = best;
     for (int i = 0; i < kStarts; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kStarts;
-      const double reach = sign * CalcReach(angle);
+      const double reach = sign * CalcReach(u);
       if (reach > most) {
         most = reach;
-        best = angle;
+        best = u;
+      }
+      u = Turned(u, {kCosine30, 0.5});
+    }
+    // Newton's method on the angle, from no farther than 15 degrees.
+    constexpr int kSteps = 6;
+    for (int i = 0; i < kSteps; ++i) {
+      const auto [slope, bend] = CalcDerivatives(best);
+      if (sign * bend >= 0) {
+        break;  // Flat: all directions are as good.
+      }
+      constexpr double kLongest = 0.2;  // [rad]
+      const double turn = std::clamp(-slope / bend, -kLongest, kLongest);
+      best = Turned(best, Vec2(1, turn).normalized());
+      if (std::abs(turn) < 1e-12) {
+        break;
       }
     }
-    // Golden section within the neighbours: the reach has one extreme there, or is flat.
-    constexpr int kSteps = 30;  // To 1e-6 rad; the reach is flat there to 1e-12 of the radius.
-    double low = best - 2 * std::numbers::pi / kStarts;
-    double high = best + 2 * std::numbers::pi / kStarts;
-    for (int i = 0; i < kSteps; ++i) {
-      const double a = high - (high - low) / std::numbers::phi;
-      const double b = low + (high - low) / std::numbers::phi;
-      (sign * CalcReach(a) > sign * CalcReach(b) ? high : low) =
-          sign * CalcReach(a) > sign * CalcReach(b) ? b : a;
-    }
-    return 0.5 * (low + high);
+    return best;
   }
 
-  [[nodiscard]] Vec3 DirectionAt(double angle) const noexcept {
-    return std::cos(angle) * u_[0] + std::sin(angle) * u_[1];
+  [[nodiscard]] Vec3 DirectionOf(const Vec2& u) const noexcept {
+    return u.x() * u_[0] + u.y() * u_[1];
   }
 
   /** The point of the circle that is farthest along a direction. */
-  [[nodiscard]] Vec3 PointAt(double angle) const noexcept {
-    const double c = cosine_ * std::cos(angle);
-    const double s = std::sin(angle);
-    return p_WC_ + radius_ / std::hypot(c, s) * (c * in_plane_ + s * u_[1]);
+  [[nodiscard]] Vec3 PointAt(const Vec2& u) const noexcept {
+    return p_WC_ + radius_ / CalcLength(u) * (cosine_ * u.x() * in_plane_ + u.y() * u_[1]);
   }
 
   [[nodiscard]] double radius() const noexcept { return radius_; }
@@ -77,12 +88,29 @@ class SeenEdge {
  private:
   static constexpr double kUpright = 1e-12;  // [rad]: below what poses are exact to.
 
+  [[nodiscard]] double CalcLength(const Vec2& u) const noexcept {
+    const double x = cosine_ * u.x();
+    return std::sqrt(x * x + u.y() * u.y());
+  }
+
+  /** Of the reach by the angle of u, the first and the second. */
+  [[nodiscard]] std::pair<double, double> CalcDerivatives(const Vec2& u) const noexcept {
+    const double length = CalcLength(u);
+    const double shortening = 1 - cosine_ * cosine_;
+    const double product = shortening * u.x() * u.y();
+    return {centre_.dot(Vec2(-u.y(), u.x())) + radius_ * product / length,
+            -centre_.dot(u) + radius_ *
+                                  (shortening * (u.x() * u.x() - u.y() * u.y()) -
+                                   product * product / (length * length)) /
+                                  length};
+  }
+
   Vec3 p_WC_;
   double radius_;
   double cosine_;
   Vec3 u_[2];
   Vec3 in_plane_;
-  std::array<double, 2> centre_{};
+  Vec2 centre_{0, 0};
 };
 
 /** The other cylinder, which an edge may touch. */
@@ -96,19 +124,19 @@ struct Wall {
 
 void AddEdge(const SeenEdge& edge, const Wall& wall, double margin, BoreContacts* contacts,
              std::size_t* count) noexcept {
-  const double deepest = edge.FindExtreme(wall.sign);
-  for (std::size_t i = 0; i < kBoreDirections; ++i) {
-    const double angle = deepest + 2 * std::numbers::pi * static_cast<double>(i) / kBoreDirections;
-    const double distance = wall.sign * (wall.radius - edge.radius() - edge.CalcReach(angle));
+  static_assert(kBoreDirections == 6);
+  Vec2 u = edge.FindExtreme(wall.sign);
+  for (std::size_t i = 0; i < kBoreDirections; ++i, u = Turned(u, {0.5, kCosine30})) {
+    const double distance = wall.sign * (wall.radius - edge.radius() - edge.CalcReach(u));
     if (distance > margin) {
       continue;
     }
-    const Vec3 p_WC = edge.PointAt(angle);
+    const Vec3 p_WC = edge.PointAt(u);
     const double along = (p_WC - wall.p_WA).dot(wall.axis);
     if (along < wall.low || along > wall.high) {
       continue;
     }
-    (*contacts)[(*count)++] = {p_WC, -edge.DirectionAt(angle), distance};
+    (*contacts)[(*count)++] = {p_WC, -edge.DirectionOf(u), distance};
   }
 }
 

@@ -17,7 +17,7 @@ void Apply(const PaperGuidance& guidance, TickOptions* tick) {
         std::min(tick->coupling.k_rot, *guidance.k3 * tick->device.max_torque / std::numbers::pi);
   }
   tick->guidance.attracts_in_fits = guidance.attracts_in_fits;
-  tick->guidance.contact_in_holes = !guidance.guides_in_holes;
+  tick->guidance.contact_in_holes = guidance.contact_in_holes;
 }
 
 }  // namespace hvas::haptics

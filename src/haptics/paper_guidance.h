@@ -30,9 +30,9 @@ struct PaperGuidance {
   std::optional<double> k3;  ///< 0 to kLargestK3.
   /** Attraction goes on inside a fitted hole, as in paper X. Otherwise the fit takes over. */
   bool attracts_in_fits{false};
-  /** Mates hold a shaft on its axis inside its hole, too, as in papers X and W. Otherwise a shaft
-   with play touches its hole there. */
-  bool guides_in_holes{false};
+  /** A shaft with play touches its hole where the two are. Otherwise its mate holds it on the axis
+   inside the hole, too, as in papers X and W. */
+  bool contact_in_holes{false};
 };
 
 /** @param tick  Of the device that renders. The coupling gets no stiffer than it is already: that

@@ -343,7 +343,6 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   if (fields.has(kAttractsInFits)) {
     fields(kAttractsInFits, options.guidance.attracts_in_fits);
   }
-  options.guidance.contact_in_holes = false;
   if (fields.has(kContactInHoles)) {
     fields(kContactInHoles, options.guidance.contact_in_holes);
   }

@@ -195,7 +195,7 @@ class ProtocolReader {
     read("k2_n_per_m", {haptics::kSmallestK2, haptics::kLargestK2}, &guidance->k2);
     read("k3", {0, haptics::kLargestK3}, &guidance->k3);
     guidance->attracts_in_fits = these.FlagOr("in_fits", guidance->attracts_in_fits);
-    guidance->guides_in_holes = these.FlagOr("in_holes", guidance->guides_in_holes);
+    guidance->contact_in_holes = these.FlagOr("contact_in_holes", guidance->contact_in_holes);
     these.Finish();
   }
 

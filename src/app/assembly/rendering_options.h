@@ -34,7 +34,7 @@ CLI::Option* AddConditionOption(CLI::App* command, Condition* condition) {
                    "Rendering: contact, mates, or hybrid (both, and the force of the fit)");
 }
 
-/** Adds --k1, --k2, --k3, --attract-in-fits and --guide-in-holes, the constants of paper X's
+/** Adds --k1, --k2, --k3, --attract-in-fits and --contact-in-holes, the constants of paper X's
  guidance, to a command. */
 inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidance) {
   command
@@ -54,9 +54,9 @@ inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidan
       ->check(CLI::Range(0.0, haptics::kLargestK3));
   command->add_flag("--attract-in-fits", guidance->attracts_in_fits,
                     "Attraction goes on inside a fitted hole, as in paper X");
-  command->add_flag("--guide-in-holes", guidance->guides_in_holes,
-                    "Mates hold a shaft with play on its axis inside the hole, too, as in the "
-                    "papers: it does not tilt, jam or wedge there");
+  command->add_flag("--contact-in-holes", guidance->contact_in_holes,
+                    "A shaft with play touches its hole where the two are: it tilts, jams and "
+                    "wedges; without, its mate holds it on the axis, as in the papers");
 }
 
 /** Adds `--sizes one-pair|of-kind|any` to a command. */

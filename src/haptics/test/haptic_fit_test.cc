@@ -210,18 +210,11 @@ TEST(Insertion, N4TongueRattlesWithinItsClearance) {
   }
 }
 
-/** A shaft with play is guided in its hole, as in the papers. */
-TickOptions GuidedInHoles() {
-  TickOptions options;
-  options.guidance.contact_in_holes = false;
-  return options;
-}
-
 // W4, W10: a clearance fit is felt as friction of the side that touches only, 0 to 0.3 N for a hand
 // 2 mm beside the axis, and not at all on it.
 TEST(Insertion, W4ClearanceFitIsLight) {
   for (const double offset : {0.0, 2e-3}) {
-    Rig rig(MakeFit("H7/g6"), Above(10e-3, offset), GuidedInHoles());
+    Rig rig(MakeFit("H7/g6"), Above(10e-3, offset));
     Insert(&rig);
     const auto& samples = rig.hand->samples;
     int sliding = 0;
@@ -340,7 +333,7 @@ TEST(Insertion, PressedShaftStaysWhereItIsLeft) {
 TEST(Insertion, EngagedLengthHoldsBeyondItsClearance) {
   for (const char* name : {"H7/g6", "H7/p6"}) {
     const auto fit = MakeFit(name);
-    Rig rig(fit, Above(10e-3), GuidedInHoles());
+    Rig rig(fit, Above(10e-3));
     InsertHalfWay(&rig);
     const double depth = rig.hand->last().insertion_depth;
     const double play = fit->CalcRadialPlay(depth);

@@ -28,6 +28,7 @@ const fits::PegInHole kPair{2 * kHoleRadius, 2 * kPegRadius};
 TickOptions HardAndWeightless() {
   TickOptions options;
   options.gravity_W.setZero();
+  options.guidance.contact_in_holes = true;
   options.contact.compliance = 2e-8;
   options.guidance.attraction_force = 0;
   options.guidance.attraction_torque = 0;

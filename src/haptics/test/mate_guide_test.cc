@@ -231,7 +231,6 @@ struct FullGuide {
   explicit FullGuide(const HeldPart& the_part) : part(the_part) {
     options.max_force = 1e9;
     options.max_torque = 1e9;
-    options.contact_in_holes = false;  // What springs answer in the hole.
   }
 
   Vec6 Force(const Pose& X_WB) {

@@ -64,7 +64,7 @@ void CopyBetweenSteps(const std::filesystem::path& from, const std::filesystem::
     recorder->AddCommand(command);
   }
   const auto done = reader->ForEachTick({}, [&](record::TickRecord tick) {
-    const auto off = [](double step) { return 0.4 * step * Vec3(1, -1, 1); };
+    const auto off = [](double step) -> Vec3 { return 0.4 * step * Vec3(1, -1, 1); };
     tick.X_WD = {tick.X_WD.q(), tick.X_WD.p() + off(spatial::kLengthStep)};
     tick.F_felt_W.f += off(spatial::kForceStep);
     tick.F_true_W.t += off(spatial::kTorqueStep);
