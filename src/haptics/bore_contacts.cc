@@ -11,7 +11,7 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kCosine30 = std::numbers::sqrt3 / 2;
+constexpr double kCosine30 = std::numbers::sqrt3 / 2;  // cos 30 degrees, exact.
 
 /** @param by  Cosine and sine. */
 Vec2 Turned(const Vec2& u, const Vec2& by) noexcept {
@@ -64,7 +64,7 @@ class SeenEdge {
       if (sign * bend >= 0) {
         break;  // Flat: all directions are as good.
       }
-      constexpr double kLongest = 0.2;  // [rad]
+      constexpr double kLongest = 0.2;  // [rad]: less than the 15 degrees. A choice.
       const double turn = std::clamp(-slope / bend, -kLongest, kLongest);
       best = Turned(best, Vec2(1, turn).normalized());
       if (std::abs(turn) < 1e-12) {

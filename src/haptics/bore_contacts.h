@@ -20,7 +20,7 @@ struct Bore {
 
 /** A place where the shaft touches the wall or an edge of the hole, or would if it moved on. */
 struct BoreContact {
-  Vec3 p_WC{Vec3::Zero()};     ///< On the edge that touches.
+  Vec3 p_WC{Vec3::Zero()};     ///< Point of the edge that touches.
   Vec3 nhat_W{Vec3::UnitZ()};  ///< Unit, out of the surface that is touched, towards the shaft.
   double distance{0};          ///< Negative where they overlap [m].
 };

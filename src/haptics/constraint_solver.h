@@ -220,7 +220,7 @@ class ConstraintSolver {
   Vec6 rhs_{Vec6::Zero()};
   Eigen::LLT<Mat6> factor_;
   bool is_factored_{false};
-  Vec6 V_free_{Vec6::Zero()};  ///< Of body 0, without any row.
+  Vec6 V_free_{Vec6::Zero()};  ///< Velocity of body 0 without any row.
   double dt_{1e-3};
   std::array<Vec6, kMaxBodies> V_;
   std::array<Mat6, kMaxBodies> inverse_;

@@ -13,6 +13,7 @@ namespace hvas::haptics {
 namespace {
 
 constexpr std::size_t kMaxPressing = 6;  // Contacts: a choice, for the time that it takes.
+// A normal and two tangents for each, and the bounded rows: room, not a choice.
 constexpr std::size_t kMaxUnknowns = 3 * kMaxPressing + ConstraintSolver::kMaxBoundedRows;
 
 /** Linear equations in fixed room, solved by elimination with partial pivoting. */
@@ -273,7 +274,7 @@ class ConstraintSolver::DirectSolution {
 
   /** Contacts that did not press after the sweeps do not press now. */
   [[nodiscard]] bool AreOthersApart() const noexcept {
-    constexpr double kNoise = 1e-12;  // [m/s]
+    constexpr double kNoise = 1e-12;  // [m/s]: what rounding leaves.
     return std::all_of(
         solver_.contacts_.begin(), solver_.contacts_.begin() + solver_.contact_count_,
         [this](const ContactRows& rows) {
