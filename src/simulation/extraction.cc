@@ -310,7 +310,10 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
       MoveBack(id);
     }
     if (step.way.empty() && (goes_aside || returns || step.kind == SequenceStep::Kind::kInsert)) {
-      const double length = IsWithinProduct(step.kind) ? step.engage_distance : kEndlessWay;
+      double length = kEndlessWay;
+      if (IsWithinProduct(step.kind)) {
+        length = step.engage_distance;
+      }
       SetUnit(unit, true);
       RelieveWay(unit, goes_aside ? Vec3(-step.extraction_W) : step.extraction_W, length);
       SetUnit(unit, false);

@@ -169,15 +169,13 @@ void PhysicsSide::HandleDrop(const SimulationEvent& event) {
   const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
     PartState& part = parts_[id.index()];
     part.X_WB = X_WB;
-    if (event.was_seated && !is_shelf) {
-      part.placement = Placement::kPlaced;
-    } else if (part.leader.is_valid() || event.onto.is_valid()) {
-      part.placement = Placement::kLoose;
-    } else if (is_shelf || kind == SequenceStep::Kind::kReturn || !hand.held_step.members.empty()) {
-      part.placement = Placement::kParked;  // a subassembly does not fall apart
-    } else {
-      part.placement = Placement::kLoose;
-    }
+    const bool is_together = part.leader.is_valid() || event.onto.is_valid();
+    // A subassembly does not fall apart.
+    const bool stays =
+        is_shelf || kind == SequenceStep::Kind::kReturn || !hand.held_step.members.empty();
+    part.placement = event.was_seated && !is_shelf ? Placement::kPlaced
+                     : stays && !is_together       ? Placement::kParked
+                                                   : Placement::kLoose;
   };
   settle(event.occurrence, event.X_WB);
   for (const haptics::HeldMember& member : hand.held->members) {

@@ -33,6 +33,7 @@ class ObjText {
    height [mm]; closed by the first and the last of them. @param turn  In segments. */
   void AddTurned(const std::vector<std::array<double, 2>>& circles_mm, double turn) {
     std::vector<std::vector<int>> rings;
+    rings.reserve(circles_mm.size());
     for (const auto& [radius_mm, z_mm] : circles_mm) {
       rings.push_back(AddCircle(radius_mm, z_mm, turn));
     }

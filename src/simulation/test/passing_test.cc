@@ -153,6 +153,7 @@ contact::ShapeSource MakeArm(double hole_radius) {
   arm.faces.push_back(contact::testing::CylinderZ(hole_radius, -1));
   // Angles of the corners are among those of the points, so that each piece has one side.
   std::vector<double> angles;
+  angles.reserve(kPoints + 4);
   for (int i = 0; i < kPoints; ++i) {
     angles.push_back(2 * std::numbers::pi * i / kPoints);
   }
@@ -253,6 +254,7 @@ const std::string& NameOf(const Model& model, OccurrenceId id) {
 
 std::vector<Kind> KindsOf(const std::vector<SequenceStep>& steps) {
   std::vector<Kind> kinds;
+  kinds.reserve(steps.size());
   for (const SequenceStep& step : steps) {
     kinds.push_back(step.kind);
   }
@@ -364,7 +366,7 @@ TEST(PassingOrderTest, AnOrderKeepsThePartsThatPassEachOtherTogether) {
 
 TEST(PassingOrderTest, StepsInWhichNothingPassesOrReturnsAreRefused) {
   const Model& model = *LatchModel();
-  for (const std::size_t missing : {1U, 2U, 3U, 4U}) {
+  for (const int missing : {1, 2, 3, 4}) {
     std::vector<SequenceStep> steps = model.sequence.steps;
     steps.erase(steps.begin() + missing);
     EXPECT_FALSE(CheckSteps(steps, model.bodies.size()).has_value()) << missing;

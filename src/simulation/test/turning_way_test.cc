@@ -9,6 +9,7 @@
 
 #include "planning/test/pairs.h"
 #include "simulation/screw_mates.h"
+#include "simulation/test/session.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::simulation {
