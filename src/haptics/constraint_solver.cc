@@ -318,7 +318,7 @@ void ConstraintSolver::RelaxRolling(PatchRows* patch) noexcept {
   }
 }
 
-spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
+spatial::Twist ConstraintSolver::Solve(int iterations, bool ends_directly) noexcept {
   Factor();
   V_free_ = factor_.solve(rhs_);
   V_[0] = V_free_;
@@ -353,7 +353,8 @@ spatial::Twist ConstraintSolver::Solve(int iterations) noexcept {
       change = std::max(change, (V_[i] - before[i]).squaredNorm());
     }
     if (change < kConverged * kConverged ||
-        ((sweep + 1 == kFirstSweeps || sweep + 1 == iterations) && SolveDirectly())) {
+        (ends_directly && (sweep + 1 == kFirstSweeps || sweep + 1 == iterations) &&
+         SolveDirectly())) {
       break;
     }
   }

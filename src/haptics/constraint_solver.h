@@ -115,8 +115,10 @@ class ConstraintSolver {
   /** Returns the row's index, or -1 when there are too many. */
   int AddBoundedRow(const Vec6& J, const BoundedRow& bounds, int body = 0) noexcept;
 
-  /** Solves; returns the velocity of body 0 at its centre of mass. */
-  [[nodiscard]] spatial::Twist Solve(int iterations) noexcept;
+  /** Solves; returns the velocity of body 0 at its centre of mass.
+   @param ends_directly  Few contacts are solved for at once in the end: two points that nearly
+   wedge a shaft take thousands of iterations otherwise. */
+  [[nodiscard]] spatial::Twist Solve(int iterations, bool ends_directly = false) noexcept;
 
   /** Velocity of body 0 without any constraint row, for choosing the contact margin. Valid after
    the springs were added. */

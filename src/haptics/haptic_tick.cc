@@ -286,7 +286,8 @@ void HapticTick::Step(const HandExchange* other, TickOutput* out) noexcept {
   contacts_.AddBodies(&solver_);
   contacts_.AddHeldContacts(displayed_, &solver_);
   contacts_.AddFreeContacts(&solver_);
-  const spatial::Twist V = solver_.Solve(contacts_.effort().iterations);
+  const spatial::Twist V =
+      solver_.Solve(contacts_.effort().iterations, guidance_.mates().has_bores());
   contacts_.Finish(solver_);
   contacts_.MoveDisplayed(V, &displayed_);
   if (other != nullptr) {

@@ -243,6 +243,7 @@ void MateGuide::ChooseBores(const HeldPart& part, const GuidanceOptions& options
       ++bores;
     }
   }
+  has_bores_ = bores > 0;
 }
 
 std::size_t MateGuide::CalcContacts(const HeldMate& mate, std::size_t i, const spatial::Pose& X_WB,

@@ -78,6 +78,9 @@ class MateGuide {
    there, and contact answers (N5). */
   [[nodiscard]] bool is_bore(std::size_t i) const noexcept { return mates_[i].is_bore; }
 
+  /** There is such a mate. */
+  [[nodiscard]] bool has_bores() const noexcept { return has_bores_; }
+
   /** Contacts of a mate of which is_bore() is true. @returns how many were filled. */
   std::size_t CalcContacts(const HeldMate& mate, std::size_t i, const spatial::Pose& X_WB,
                            double margin, BoreContacts* contacts) const noexcept;
@@ -117,6 +120,7 @@ class MateGuide {
   std::array<MateState, kMaxMates> mates_{};
   bool is_near_{false};
   bool is_aligned_{false};
+  bool has_bores_{false};
   int captured_count_{0};
   double insertion_depth_{0};
   double lateral_force_{0};
