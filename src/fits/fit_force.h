@@ -116,6 +116,7 @@ class FitForce {
   /** S at the N + 1 stations from the mouth to L [m]. */
   [[nodiscard]] std::span<const double> clearances() const noexcept { return clearance_; }
 
+  /** Coefficients of the pair, as they were given to Make(). */
   [[nodiscard]] const FitFriction& friction() const noexcept { return friction_; }
 
   /** d_s, actual [m]. */

@@ -16,7 +16,8 @@ constexpr std::size_t kMaxPressing = 6;  // Contacts: a choice, for the time tha
 // A normal and two tangents for each, and the bounded rows: room, not a choice.
 constexpr std::size_t kMaxUnknowns = 3 * kMaxPressing + ConstraintSolver::kMaxBoundedRows;
 
-/** Linear equations in fixed room, solved by elimination with partial pivoting. */
+/** Linear equations in fixed room, solved by elimination with partial pivoting. Eigen's would go
+ through its blocked kernels, which allocate. */
 class LinearEquations {
  public:
   void Resize(std::size_t size) noexcept { size_ = size; }
@@ -108,7 +109,7 @@ class ConstraintSolver::DirectSolution {
     std::size_t index{0};
     Motion motion{Motion::kSticks};
     double coefficient{0};
-    double stick_softness{0};
+    double stick_softness{0};         ///< By its share of the load after the sweeps.
     Eigen::Vector2d friction{0, 0};   ///< Unit: where friction points while the contact slides.
     Eigen::Vector3d lambda{0, 0, 0};  ///< Solution: normal, and along both tangents [N s].
   };
@@ -224,9 +225,8 @@ class ConstraintSolver::DirectSolution {
   Verdict CheckContact(std::size_t* next, Pressing* pressing) noexcept {
     const ContactRows& rows = solver_.contacts_[pressing->index];
     pressing->lambda.setZero();
-    const double approach = rows.normal.J.dot(V_) - rows.normal.bias;
     if (pressing->motion == Motion::kLetsGo) {
-      return approach < 0 ? Verdict::kImpossible : Verdict::kRight;
+      return rows.normal.J.dot(V_) < rows.normal.bias ? Verdict::kImpossible : Verdict::kRight;
     }
     const double normal = equations_.right((*next)++);
     if (pressing->motion == Motion::kSticks) {

@@ -313,6 +313,7 @@ void ContactStep::AddBores(const DisplayedPart& displayed, double margin,
   // Stiffness along a surface as a share of that into it, 2 (1 - nu) / (2 - nu) with nu = 0.3:
   // Mindlin, J. Appl. Mech. 16, 1949.
   constexpr double kTangentialShare = 0.82;
+  account_.is_truncated = account_.is_truncated || guide_.has_guided_bores();
   const HeldPart& part = *displayed.part;
   const std::size_t count = std::min(part.mates.size(), MateGuide::kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {

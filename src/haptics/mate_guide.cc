@@ -237,11 +237,17 @@ void MateGuide::ChooseBores(const HeldPart& part, const GuidanceOptions& options
     mates_[i].is_bore = mates_[i].is_bore && is_possible(i);
     bores += mates_[i].is_bore ? 1 : 0;
   }
-  for (std::size_t i = 0; i < count && bores < kMaxBores; ++i) {
-    if (!mates_[i].is_bore && is_possible(i)) {
-      mates_[i].is_bore = true;
-      ++bores;
+  has_guided_bores_ = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (mates_[i].is_bore || !is_possible(i)) {
+      continue;
     }
+    if (bores == kMaxBores) {
+      has_guided_bores_ = true;
+      break;
+    }
+    mates_[i].is_bore = true;
+    ++bores;
   }
   has_bores_ = bores > 0;
 }
@@ -253,20 +259,16 @@ std::size_t MateGuide::CalcContacts(const HeldMate& mate, std::size_t i, const s
   Bore bore;
   bore.hole_radius = mate.radius;
   bore.shaft_radius = mate.radius - mate.fit->CalcRadialPlay(mates_[i].geometry.engaged);
-  if (mate.has_shaft) {
-    bore.hole_low = spans.placed_low;
-    bore.hole_high = spans.placed_high;
-    bore.shaft_low = spans.held_low;
-    bore.shaft_high = spans.held_high;
-    return CalcBoreContacts(bore, mate.X_WM, X_WN, margin, contacts);
-  }
-  bore.hole_low = spans.held_low;
-  bore.hole_high = spans.held_high;
-  bore.shaft_low = spans.placed_low;
-  bore.shaft_high = spans.placed_high;
-  const std::size_t count = CalcBoreContacts(bore, X_WN, mate.X_WM, margin, contacts);
-  for (std::size_t k = 0; k < count; ++k) {
-    (*contacts)[k].nhat_W *= -1;  // It pushes the hole, which is held.
+  bore.hole_low = mate.has_shaft ? spans.placed_low : spans.held_low;
+  bore.hole_high = mate.has_shaft ? spans.placed_high : spans.held_high;
+  bore.shaft_low = mate.has_shaft ? spans.held_low : spans.placed_low;
+  bore.shaft_high = mate.has_shaft ? spans.held_high : spans.placed_high;
+  const std::size_t count = CalcBoreContacts(bore, mate.has_shaft ? mate.X_WM : X_WN,
+                                             mate.has_shaft ? X_WN : mate.X_WM, margin, contacts);
+  if (!mate.has_shaft) {
+    for (BoreContact& contact : std::span(contacts->data(), count)) {
+      contact.nhat_W *= -1;  // It pushes the hole, which is held.
+    }
   }
   return count;
 }

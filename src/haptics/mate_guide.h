@@ -81,6 +81,9 @@ class MateGuide {
   /** There is such a mate. */
   [[nodiscard]] bool has_bores() const noexcept { return has_bores_; }
 
+  /** More shafts are in their holes than kMaxBores: the others are guided. */
+  [[nodiscard]] bool has_guided_bores() const noexcept { return has_guided_bores_; }
+
   /** Contacts of a mate of which is_bore() is true. @returns how many were filled. */
   std::size_t CalcContacts(const HeldMate& mate, std::size_t i, const spatial::Pose& X_WB,
                            double margin, BoreContacts* contacts) const noexcept;
@@ -121,6 +124,7 @@ class MateGuide {
   bool is_near_{false};
   bool is_aligned_{false};
   bool has_bores_{false};
+  bool has_guided_bores_{false};
   int captured_count_{0};
   double insertion_depth_{0};
   double lateral_force_{0};

@@ -14,8 +14,8 @@ inline constexpr double kSmallestK2 = 50;
 inline constexpr double kLargestK2 = 5000;
 inline constexpr double kLargestK3 = 100;
 
-/** Constants of paper X's guidance, in place of those of TickOptions. With F_max and T_max the peak
- force and torque of the rendered device:
+/** Constants of paper X's guidance, and where it ends, in place of those of TickOptions. With F_max
+ and T_max the peak force and torque of the rendered device:
 
  | constant | equation | sets |
  |---|---|---|

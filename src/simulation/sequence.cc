@@ -408,6 +408,12 @@ std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> ove
   return allowances;
 }
 
+bool IsBase(const Sequence& sequence, OccurrenceId id) {
+  return std::any_of(sequence.steps.begin(), sequence.steps.end(), [id](const SequenceStep& step) {
+    return step.kind == SequenceStep::Kind::kBase && step.occurrence == id;
+  });
+}
+
 OccurrenceId FindBase(const Sequence& sequence) {
   const auto base =
       std::find_if(sequence.steps.rbegin(), sequence.steps.rend(),

@@ -126,6 +126,9 @@ struct Sequence {
  and a half. Of 22 pairs drawn for it, 20 have their way within 60,000, two within 1,900,000. */
 inline constexpr std::uint64_t kWayLooks = 2'000'000;
 
+/** Whether other parts are put onto this one: in the fixture, or in a subassembly. */
+[[nodiscard]] bool IsBase(const Sequence& sequence, product::OccurrenceId id);
+
 /** The part that stays in the fixture. */
 [[nodiscard]] product::OccurrenceId FindBase(const Sequence& sequence);
 

@@ -81,10 +81,7 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
   for (const product::Occurrence& occurrence : model.product->occurrences) {
     const product::Part& part = model.product->part_of(occurrence.id);
     const simulation::Body& body = model.bodies[occurrence.id.index()];
-    const auto& steps = model.sequence.steps;
-    const bool is_base = std::any_of(steps.begin(), steps.end(), [&](const SequenceStep& step) {
-      return step.kind == SequenceStep::Kind::kBase && step.occurrence == occurrence.id;
-    });
+    const bool is_base = IsBase(model.sequence, occurrence.id);
     all.push_back(
         {{"id", occurrence.id.value()},
          {"name", occurrence.name},

@@ -21,24 +21,13 @@ Json MakeResumedEvent(const SceneSnapshot& begun) {
           {"edits", begun.scene->edits.size()}};
 }
 
-/** Is nothing in its place but the parts that everything else is put onto, and fixtures? */
+/** Whether no part is in its place but those that others are put onto. */
 bool AreOnlyBasesPlaced(const LiveState& state, const simulation::Model& model) {
-  using Kind = simulation::SequenceStep::Kind;
-  std::size_t built_on = 0;
-  for (const simulation::SequenceStep& step : model.sequence.steps) {
-    built_on += step.kind == Kind::kBase &&
-                        state.parts[step.occurrence.index()].placement == Placement::kPlaced
-                    ? 1
-                    : 0;
-  }
-  std::size_t placed = 0;
-  for (std::size_t i = 0; i < state.parts.size(); ++i) {
-    placed += state.parts[i].placement == Placement::kPlaced &&
-                      model.bodies[i].role == simulation::BodyRole::kPart
-                  ? 1
-                  : 0;
-  }
-  return placed == built_on;
+  return std::none_of(model.bodies.begin(), model.bodies.end(), [&](const simulation::Body& body) {
+    return body.role == simulation::BodyRole::kPart &&
+           state.parts[body.occurrence.index()].placement == Placement::kPlaced &&
+           !IsBase(model.sequence, body.occurrence);
+  });
 }
 
 /** The state of parts with the model in which all are ready: those that have not been touched lie

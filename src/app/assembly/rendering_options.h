@@ -34,8 +34,8 @@ CLI::Option* AddConditionOption(CLI::App* command, Condition* condition) {
                    "Rendering: contact, mates, or hybrid (both, and the force of the fit)");
 }
 
-/** Adds --k1, --k2, --k3, --attract-in-fits and --contact-in-holes, the constants of paper X's
- guidance, to a command. */
+/** Adds --k1, --k2, --k3 and --attract-in-fits, the constants of paper X's guidance, and
+ --contact-in-holes, which ends guidance where a shaft is in its hole, to a command. */
 inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidance) {
   command
       ->add_option("--k1", guidance->k1,

@@ -3,6 +3,7 @@
 #include "haptics/constraint_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,46 @@ Vec6 Stack(const Twist& V) {
   Vec6 out;
   out << V.w, V.v;
   return out;
+}
+
+/** A peg of 10 mm that is pressed into its hole and touches it at two points, one of them `length`
+ under the other: they wedge it from mu times the diameter on, 3 mm. Forces of both points. */
+std::array<Vec3, 2> PressTilted(double length, int iterations, bool ends_directly) {
+  constexpr double kRadius = 5e-3;
+  ConstraintSolver solver;
+  solver.Begin(kBodyMass, Inertia(), Vec3(0, 0, 0.03), {}, kDt);
+  solver.AddWrench({Vec3::Zero(), Vec3(0, 0, -5)});
+  solver.AddAngularSpring(Vec3(0, 0.02, 0), Mat3::Identity());
+  ConstraintSolver::Patch patch;
+  patch.coefficient = 0.3;
+  patch.stiffness = 1e8;
+  ConstraintSolver::Contact contact;
+  contact.patch = solver.AddPatch(patch);
+  contact.compliance = 2e-8;
+  contact.p_WC = Vec3(-kRadius, 0, 0);
+  contact.nhat_W = Vec3::UnitX();
+  solver.AddContact(contact);
+  contact.p_WC = Vec3(kRadius, 0, length);
+  contact.nhat_W = -Vec3::UnitX();
+  solver.AddContact(contact);
+  (void)solver.Solve(iterations, ends_directly);
+  return {solver.contact_force(0), solver.contact_force(1)};
+}
+
+// What is solved at once is what sweeps come to in the end, where as many as a tick has are far
+// from it: two points that nearly wedge, and slide.
+TEST(ConstraintSolver, EndsDirectlyWhereManySweepsWould) {
+  constexpr int kOfATick = 30;
+  for (const double length : {3.1e-3, 3.5e-3, 5e-3, 10e-3}) {
+    SCOPED_TRACE(length);
+    const std::array<Vec3, 2> swept = PressTilted(length, 1000000, false);
+    const std::array<Vec3, 2> few = PressTilted(length, kOfATick, false);
+    const std::array<Vec3, 2> direct = PressTilted(length, kOfATick, true);
+    for (std::size_t i = 0; i < swept.size(); ++i) {
+      EXPECT_GT((few[i] - swept[i]).norm(), 0.1);
+      EXPECT_LT((direct[i] - swept[i]).norm(), 1e-4);
+    }
+  }
 }
 
 // A constant force changes the velocity by F t / m, whatever the step.

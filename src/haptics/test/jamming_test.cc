@@ -15,7 +15,6 @@ namespace hvas::haptics {
 namespace {
 
 using spatial::Pose;
-using testing::Faces;
 using testing::HeldRig;
 
 constexpr double kHoleRadius = 5.2e-3;
@@ -54,15 +53,10 @@ struct PegRig : HeldRig {
   }
 
   void Make(double friction, const Pose& X_WB) {
-    using contact::testing::CylinderZ;
-    using contact::testing::PlaneAt;
     static const auto hole = contact::testing::Build(
         contact::testing::Bushing(kHoleRadius, 3 * kHoleRadius, kHoleDepth, 20e-6));
-    static const auto peg = contact::testing::Build(contact::testing::Lathe(
-        {{{{0, 0}, {kPegRadius, 0}}, PlaneAt(0, -1)},
-         {{{kPegRadius, 0}, {kPegRadius, kPegLength}}, CylinderZ(kPegRadius, 1)},
-         {{{kPegRadius, kPegLength}, {0, kPegLength}}, PlaneAt(kPegLength, 1)}},
-        contact::testing::Segments(kPegRadius, 20e-6)));
+    static const auto peg =
+        contact::testing::Build(contact::testing::Shaft(kPegRadius, kPegLength, 20e-6));
     const contact::BodyId body = scene.Add(hole, Pose());
     Place(peg, X_WB);
     testing::SetMass({{kPegRadius, 0, kPegLength}}, &part);
@@ -73,14 +67,10 @@ struct PegRig : HeldRig {
     p.length = kHoleDepth;
     p.roughness = 0;
     p.friction = {friction, friction, friction, friction};
-    HeldMate mate;
-    mate.id = product::MateId(0);
+    HeldMate mate = testing::MakeAxisMate(
+        std::make_shared<const fits::FitForce>(*fits::FitForce::Make(p)), body);
     mate.capture = {product::MateKind::kAxisHole, 0, kHoleDepth, 0, kPegLength, 0};
     mate.radius = kHoleRadius;
-    mate.fit = std::make_shared<const fits::FitForce>(*fits::FitForce::Make(p));
-    mate.body = body;
-    mate.held_faces = Faces({1}, {0, 1, 2});
-    mate.placed_faces = Faces({3}, {0, 2, 3});
     part.mates = {mate};
     part.X_WB_goal = Pose(Vec3(0, 0, -1));  // Far away: it never arrives.
   }
