@@ -242,13 +242,23 @@ function prefer(preferences) {
   }
 }
 
-/** Until this much of a scene has been drawn. */
+/** Until this much of a scene has been drawn, with all parts: on a slow machine a product is shown as soon as its
+ first parts are prepared, and what is pressed on while the others take their places is not what was aimed at. */
 export async function waitForPicture(page, frames = 3) {
-  await page.waitForFunction(
-    (count) => window.hvas && window.hvas.state().hasScene && window.hvas.framesDrawn > count,
-    frames,
-    { timeout: 60_000 },
-  );
+  const end = Date.now() + 60_000;
+  const isWhole = async () => {
+    const { epoch } = await stateOf(page);
+    const scene = await fetchScene(page);
+    return scene.pending === 0 && scene.epoch === epoch;
+  };
+  do {
+    await page.waitForFunction(
+      (count) => window.hvas && window.hvas.state().hasScene && window.hvas.framesDrawn > count,
+      frames,
+      { timeout: end - Date.now() },
+    );
+    await nextFrame(page);
+  } while (!(await isWhole()));
 }
 
 export function takePicture(page, name) {
@@ -422,6 +432,7 @@ export async function clickFace(page, occurrence, face) {
 export async function takeByMouse(page, occurrence) {
   await waitForView(page);  // a part is pressed where it is seen when the button goes down
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  assert.ok(at.isVisible, `part ${occurrence} is to be seen`);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
   await page.mouse.move(at.x + 8, at.y - 8, { steps: 3 });  // from here on it is no click

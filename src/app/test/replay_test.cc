@@ -108,44 +108,44 @@ class ReplayCommandTest : public ::testing::Test {
  protected:
   void Record(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{
-        "assemble", ProductFile("bushing"), "--fit", "all=H7/p6", "--record", file, "-q"};
+        "assemble", ProductFile("bushing"), "--fit", "all=H7/p6", "--record", file_, "-q"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     (void)RunHvas(arguments);
   }
 
-  hvas::testing::TemporaryFolder folder;
-  const std::string file = (folder / "press.hvasrec").string();
+  hvas::testing::TemporaryFolder folder_;
+  const std::string file_ = (folder_ / "press.hvasrec").string();
 };
 
 TEST_F(ReplayCommandTest, VerifiesASessionInRealTime) {
   Record({"--realtime", "--limit", "3"});
-  const json report = RunHvasJson({"replay", file, "--verify"});
+  const json report = RunHvasJson({"replay", file_, "--verify"});
   EXPECT_EQ(report["exact"], true);
   EXPECT_EQ(report["different_ticks"], 0);
   EXPECT_GT(report["ticks"], 2000);
-  const auto text = RunHvas({"replay", file, "--verify"});
+  const auto text = RunHvas({"replay", file_, "--verify"});
   EXPECT_EQ(text.status, 0);
   EXPECT_NE(text.out.find("bit for bit"), std::string::npos);
 }
 
 TEST_F(ReplayCommandTest, ShowsWhatAnotherForceMapWouldHaveBeen) {  // N4
   Record({});
-  const json report = RunHvasJson({"replay", file, "--force-map", "paper"});
+  const json report = RunHvasJson({"replay", file_, "--force-map", "paper"});
   EXPECT_EQ(report["exact"], false);
   EXPECT_GT(report["largest_felt_difference_n"], 0.1);
   EXPECT_GT(report["first_difference"]["time_s"], 0);
   EXPECT_GT(report["rms_felt_difference_n"], 0.01);
   EXPECT_GT(report["different_ticks"], 100);
-  EXPECT_EQ(RunHvas({"replay", file, "--force-map", "paper", "--verify"}).status, 64)
+  EXPECT_EQ(RunHvas({"replay", file_, "--force-map", "paper", "--verify"}).status, 64)
       << "the two make no sense together";
 }
 
 TEST_F(ReplayCommandTest, TellsWhatIsNoRecord) {
-  const auto missing = RunHvas({"replay", file});
+  const auto missing = RunHvas({"replay", file_});
   EXPECT_EQ(missing.status, 1);
-  EXPECT_NE(missing.err.find(file), std::string::npos);
-  std::ofstream(file) << "not a record";
-  const auto wrong = RunHvas({"replay", file});
+  EXPECT_NE(missing.err.find(file_), std::string::npos);
+  std::ofstream(file_) << "not a record";
+  const auto wrong = RunHvas({"replay", file_});
   EXPECT_EQ(wrong.status, 1);
   EXPECT_NE(wrong.err.find("not a session record"), std::string::npos);
   const auto old = RunHvas(

@@ -443,7 +443,7 @@ Twist SolveTurned(const RandomScene& s, const Mat3& R, Vec3* total) {
   Vec6 J;
   J << R * s.J.head<3>(), R * s.J.tail<3>();
   (void)solver.AddBoundedRow(J, {-1, 1});
-  const Twist V = solver.Solve(20'000);
+  Twist V = solver.Solve(20'000);
   *total = Vec3::Zero();
   for (int i = 0; i < 6; ++i) {
     *total += solver.contact_force(i);

@@ -22,6 +22,11 @@ CameraControls.install({
 
 export type ViewName = "front" | "back" | "left" | "right" | "top" | "bottom" | "iso";
 
+export interface EyePose {
+  eye: Vec3;
+  target: Vec3;
+}
+
 const kDirections: Record<ViewName, Vec3> = {
   front: [0, -1, 0],
   back: [0, 1, 0],
@@ -42,6 +47,7 @@ export class CameraRig {
   readonly parallel = new OrthographicCamera(-1, 1, 1, -1, -10, 100);
   readonly controls: CameraControls;
   private aspect = 1;
+  private beginning: EyePose | null = null;
 
   constructor(element: HTMLElement) {
     this.perspective.up.set(0, 0, 1);
@@ -134,6 +140,21 @@ export class CameraRig {
     }
   }
 
+  /** As the product is seen before its user has moved the eye. */
+  begin(direction: Vec3, points: readonly Vector3[]): void {
+    this.lookFrom(direction, points, false);
+    this.beginning = this.pose();
+  }
+
+  /** Whether the eye has not been moved since begin(). */
+  isWhereItBegan(): boolean {
+    const now = this.pose();
+    const numbers = ({ eye, target }: EyePose): number[] => [...eye, ...target];
+    const from = this.beginning === null ? [] : numbers(this.beginning);
+    const most = 1e-6 * this.controls.distance;
+    return from.length > 0 && numbers(now).every((value, k) => Math.abs(value - from[k]!) <= most);
+  }
+
   view(name: ViewName, points: readonly Vector3[], isSmooth = true): void {
     this.lookFrom(kDirections[name], points, isSmooth);
   }
@@ -159,7 +180,7 @@ export class CameraRig {
     }
   }
 
-  pose(): { eye: Vec3; target: Vec3 } {
+  pose(): EyePose {
     const eye = this.controls.getPosition(new Vector3());
     const target = this.controls.getTarget(new Vector3());
     return { eye: eye.toArray(), target: target.toArray() };

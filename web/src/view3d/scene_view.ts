@@ -17,6 +17,7 @@ import { cornersOf, ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
 import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
+import { loadedAs, type Loaded } from "./loaded_as";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
@@ -34,7 +35,7 @@ export class SceneView {
   scene: Scene | null = null;
   isDirty = true;
   /** Called when a product has been loaded and stands in the view. */
-  onLoaded: (isNew: boolean) => void = () => {};
+  onLoaded: (loaded: Loaded) => void = () => {};
 
   private palette: Palette | null = null;
   private readonly versions = new Map<number, number>();
@@ -144,10 +145,9 @@ export class SceneView {
   private async load(scene: Scene | null): Promise<void> {
     const turn = ++this.loadCount;
     if (scene === null) {
-      this.clear();
-      return;
+      return this.clear();
     }
-    const isNew = this.scene === null || this.scene.source !== scene.source || this.scene.name !== scene.name;
+    const loaded = loadedAs(scene, this.scene);
     if (this.parts === null || this.glbUrl !== scene.glb) {
       const shapes = await loadShapes(scene.glb);
       if (turn !== this.loadCount) {
@@ -180,7 +180,7 @@ export class SceneView {
     this.applyLooks();
     this.applySection();
     this.isDirty = true;
-    this.onLoaded(isNew);
+    this.onLoaded(loaded);
   }
 
   private clear(): void {

@@ -13,6 +13,7 @@ import { firstDirection } from "./first_direction";
 import { FrameMeter } from "./frame_meter";
 import { HandControl } from "./hand_control";
 import { Lifetime } from "./lifetime";
+import type { Loaded } from "./loaded_as";
 import type { Eye } from "./mouse_hand";
 import { Painter } from "./painter";
 import { readPalette } from "./palette";
@@ -91,7 +92,7 @@ export class Viewport {
     };
     this.hand = new HandControl(studio, this.product, view);
     this.pointer = new PointerInput(this, studio);
-    this.product.onLoaded = (isNew) => this.onLoaded(isNew);
+    this.product.onLoaded = (loaded) => this.onLoaded(loaded);
     const observer = new ResizeObserver(() => this.resize());
     observer.observe(host);
     this.life.onEnd(() => observer.disconnect());
@@ -238,7 +239,7 @@ export class Viewport {
     });
   }
 
-  private onLoaded(isNew: boolean): void {
+  private onLoaded(loaded: Loaded): void {
     const scene = this.product.scene!;
     const around = new Box3().setFromPoints(this.product.outline()).getBoundingSphere(new Sphere());
     const fixed = scene.occurrences.filter((o) => o.is_base).map((o) => o.id);
@@ -249,8 +250,8 @@ export class Viewport {
     this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
     if (this.pendingView !== null) {
       this.show(this.pendingView);
-    } else if (isNew) {
-      this.rig.lookFrom(firstDirection(scene), this.product.firstOutline(), false);
+    } else if (loaded === "new" || (loaded === "completed" && this.rig.isWhereItBegan())) {
+      this.rig.begin(firstDirection(scene), this.product.firstOutline());
     }
     this.hand.stop();
   }
