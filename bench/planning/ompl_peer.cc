@@ -26,9 +26,10 @@ spatial::Pose PoseOf(const ob::State* state) {
 
 }  // namespace
 
-PeerRun SolveByOmpl(const Puzzle& puzzle, std::uint32_t seed, double limit) {
-  ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
-  ompl::RNG::setSeed(seed);
+PeerRun SolveByOmpl(const Puzzle& puzzle, const PeerOptions& options) {
+  ompl::msg::setLogLevel(
+      ompl::msg::LOG_NONE);  // It takes a seed once a process, and complains of others.
+  ompl::RNG::setSeed(options.seed);
   const FclPair pair(puzzle);
   PeerRun run;
   // In millimetres, so that turns and ways have the weights that OMPL.app's files are made for.
@@ -60,13 +61,18 @@ PeerRun SolveByOmpl(const Puzzle& puzzle, std::uint32_t seed, double limit) {
   };
   setup.setStartAndGoalStates(state_of(puzzle.X_WB_start), state_of(*puzzle.X_WB_goal));
   setup.setPlanner(std::make_shared<og::RRTConnect>(setup.getSpaceInformation()));
-  setup.getSpaceInformation()->setStateValidityCheckingResolution(0.01);  // OMPL's own default.
+  setup.getSpaceInformation()->setStateValidityCheckingResolution(options.resolution);
   const auto start = std::chrono::steady_clock::now();
-  const ob::PlannerStatus status = setup.solve(limit);
+  const ob::PlannerStatus status = setup.solve(options.limit_s);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.is_solved = status == ob::PlannerStatus::EXACT_SOLUTION;
   if (run.is_solved) {
-    for (const ob::State* state : setup.getSolutionPath().getStates()) {
+    og::PathGeometric& path = setup.getSolutionPath();
+    run.poses = path.getStateCount();
+    // It moves between its poses as OMPL interpolates, which is no screw.
+    constexpr unsigned kFine = 5000;
+    path.interpolate(kFine);
+    for (const ob::State* state : path.getStates()) {
       run.path.push_back(PoseOf(state));
     }
   }

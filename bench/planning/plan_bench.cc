@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   bool has_shortening = true;
   double spacing = 0;
   int peer_seeds = 0;
+  bench::PeerOptions peer_options;
   app.add_option("folder", folder, "folder with ompl/ and factory/")->required();
   app.add_option("problems", names,
                  "Twistycool, alpha-1.5, ..., nut:m16_tight, free:m16_tight, pair:FOLDER");
@@ -57,6 +58,9 @@ int main(int argc, char** argv) {
   app.add_option("--limit", limit, "seconds of a run");
   app.add_option("--tolerance", tolerance, "penetration that is allowed [m]");
   app.add_option("--peer", peer_seeds, "seeds of OMPL's RRT-Connect with FCL, in the same run");
+  app.add_option("--peer-resolution", peer_options.resolution,
+                 "distance of the poses it checks, as a share of the space's extent")
+      ->capture_default_str();
   app.add_option("--spacing", spacing, "of contact samples [m]; 0: as contact chooses");
   app.add_option("--budget", budget, "contact queries");
   app.add_flag("!--no-shortening", has_shortening, "leave ways as they are found");
@@ -131,8 +135,9 @@ int main(int argc, char** argv) {
         MedianOf(tally.queries));
     Tally peer;
     for (int seed = 1; seed <= peer_seeds && puzzle->X_WB_goal; ++seed) {
-      const bench::PeerRun run =
-          bench::SolveByOmpl(*puzzle, static_cast<std::uint32_t>(seed), limit);
+      peer_options.seed = static_cast<std::uint32_t>(seed);
+      peer_options.limit_s = limit;
+      const bench::PeerRun run = bench::SolveByOmpl(*puzzle, peer_options);
       ++peer.runs;
       peer.solved += run.is_solved ? 1 : 0;
       peer.seconds.push_back(run.seconds);  // Of a run that did not solve it, the limit.
@@ -140,7 +145,8 @@ int main(int argc, char** argv) {
       std::string text = "none";
       if (run.is_solved) {
         const bench::FclFinding fcl = bench::CheckByFcl(*puzzle, run.path, 5e-6, 20000);
-        text = fmt::format("{} poses; FCL {} of {} samples collide", run.path.size(), fcl.colliding,
+        peer.colliding += fcl.colliding > 0 ? 1 : 0;
+        text = fmt::format("{} poses; FCL {} of {} samples collide", run.poses, fcl.colliding,
                            fcl.samples);
       }
       std::cout << fmt::format("{} peer seed {}: {:.2f} s, {} queries, {}\n", puzzle->name, seed,
@@ -148,9 +154,11 @@ int main(int argc, char** argv) {
                 << std::flush;
     }
     if (peer.runs > 0) {
-      std::cout << fmt::format("{:24s} peer {} of {} solved, median {:.2f} s, {:.0f} queries\n",
-                               puzzle->name, peer.solved, peer.runs, MedianOf(peer.seconds),
-                               MedianOf(peer.queries));
+      std::cout << fmt::format(
+          "{:24s} peer {} of {} solved, {} of them through the mesh, median {:.2f} s, {:.0f} "
+          "queries\n",
+          puzzle->name, peer.solved, peer.runs, peer.colliding, MedianOf(peer.seconds),
+          MedianOf(peer.queries));
     }
   }
   return 0;

@@ -69,7 +69,7 @@ class ProtocolReader {
 
  private:
   std::string ReadId(YamlFields* fields) {
-    const std::string id = fields->Text("id");
+    std::string id = fields->Text("id");
     if (!id.empty() && !IsId(id)) {
       document_->Refuse(fields->Get("id"),
                         fmt::format("the id \"{}\" of {} is not valid", id, fields->entity()),
