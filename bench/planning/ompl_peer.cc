@@ -62,6 +62,7 @@ PeerRun SolveByOmpl(const Puzzle& puzzle, const PeerOptions& options) {
   setup.setStartAndGoalStates(state_of(puzzle.X_WB_start), state_of(*puzzle.X_WB_goal));
   setup.setPlanner(std::make_shared<og::RRTConnect>(setup.getSpaceInformation()));
   setup.getSpaceInformation()->setStateValidityCheckingResolution(options.resolution);
+  run.check_step = 1e-3 * options.resolution * space->getMaximumExtent();
   const auto start = std::chrono::steady_clock::now();
   const ob::PlannerStatus status = setup.solve(options.limit_s);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

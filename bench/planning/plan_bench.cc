@@ -146,8 +146,8 @@ int main(int argc, char** argv) {
       if (run.is_solved) {
         const bench::FclFinding fcl = bench::CheckByFcl(*puzzle, run.path, 5e-6, 20000);
         peer.colliding += fcl.colliding > 0 ? 1 : 0;
-        text = fmt::format("{} poses; FCL {} of {} samples collide", run.poses, fcl.colliding,
-                           fcl.samples);
+        text = fmt::format("{} poses, checked each {:.3f} mm; FCL {} of {} samples collide",
+                           run.poses, 1e3 * run.check_step, fcl.colliding, fcl.samples);
       }
       std::cout << fmt::format("{} peer seed {}: {:.2f} s, {} queries, {}\n", puzzle->name, seed,
                                run.seconds, run.queries, text)

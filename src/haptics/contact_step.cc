@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "haptics/giving_rows.h"
 #include "haptics/motion_check.h"
 
 namespace hvas::haptics {
@@ -379,6 +380,8 @@ void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
   }
   unmet_ = is_solved_by_other() ? ListHeldByOther() : std::span<const contact::BodyId>();
   const HeldPart& part = *displayed.part;
+  account_.is_truncated =
+      account_.is_truncated || part.gives.size() > GivingRows::kMaxCurves;  // Some do not resist.
   const ContactOptions& contact = options_.contact;
   const spatial::Twist V = solver->SolveUnconstrained();
   const double speed = std::min(contact.max_speed, V.v.norm()) +

@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace hvas::haptics {
-namespace {
-
-constexpr double kBristle = 1e7;  // [N/m]; gives 0.7 um at the device's force
-
-}  // namespace
 
 void FitRows::Reset() noexcept {
   axial_row_ = turning_row_ = -1;

@@ -44,6 +44,9 @@ struct FitForces {
  is left for the row. RT-safe. */
 class FitRows {
  public:
+  /** Stiffness of the bristles [N/m]; gives 0.7 um at the device's force. */
+  static constexpr double kBristle = 1e7;
+
   FitRows(ForceMapKind kind, const device::DeviceProfile& device)
       : kind_(kind),
         largest_felt_(kLargestFeltShare * device.max_force),

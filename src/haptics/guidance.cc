@@ -20,6 +20,7 @@ void Guidance::Begin(const HeldPart& part) noexcept {
     guide_.StartInPlace();
   }
   fit_rows_.Reset();
+  giving_rows_.Reset(part.starts_in_place);
 }
 
 void Guidance::Update(const DisplayedPart& displayed, const spatial::Pose& X_WT) noexcept {
@@ -31,6 +32,10 @@ void Guidance::Update(const DisplayedPart& displayed, const spatial::Pose& X_WT)
 EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, double soft_start,
                              ConstraintSolver* solver) noexcept {
   is_stuck_ = false;
+  if (options_.renders_fits) {
+    giving_rows_.Add(displayed, options_.dt, solver);
+    is_stuck_ = giving_rows_.holding_force() > weight;
+  }
   guide_.AddSprings(*displayed.part, options_.guidance, solver);
   if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
     is_attracting_ = false;
@@ -98,7 +103,7 @@ void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis,
   const spatial::Twist& V = displayed.V;
   const double speed = fit_axis_.out_W.dot(V.v + V.w.cross(fit_axis_.p_CmQ_W));
   FitLoad load = guide_.CalcFitLoad(part, speed, options_.paper_factors);
-  is_stuck_ = std::min(load.in, load.out) > weight;
+  is_stuck_ = is_stuck_ || std::min(load.in, load.out) > weight;
   const double friction = options_.contact.friction.kinetic_coefficient * guide_.lateral_force();
   for (double* sum : {&load.in, &load.out, &load.shown_in, &load.shown_out}) {
     *sum += friction;
@@ -109,8 +114,10 @@ void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis,
 
 void Guidance::Finish(const ConstraintSolver& solver, TickOutput* out) noexcept {
   const FitForces forces = fit_rows_.Finish(solver);
-  out->axial_felt = forces.axial_felt;
-  out->axial_true = forces.axial_true;
+  const GivingRows::Forces giving = giving_rows_.Finish(solver);
+  out->axial_felt = forces.axial_felt + giving.felt;
+  out->axial_true = forces.axial_true + giving.truth;
+  out->F_true_W.f += (giving.truth - giving.felt) * giving_rows_.out_W();
   const Vec3 f = (forces.axial_true - forces.axial_felt) * fit_axis_.out_W;
   out->F_true_W.f += f;
   out->F_true_W.t +=

@@ -2,6 +2,7 @@
 
 #include "haptics/displayed_part.h"
 #include "haptics/fit_rows.h"
+#include "haptics/giving_rows.h"
 #include "haptics/mate_guide.h"
 #include "haptics/options.h"
 #include "haptics/tick_output.h"
@@ -15,11 +16,13 @@ struct EnergyCredit {
 };
 
 /** Guidance of the held part by its mates: springs of captured mates and attraction along their
- axis (X8..X10), and the resistance of their fits (W5, W8, W9). RT-safe. */
+ axis (X8..X10), and the resistance of their fits (W5, W8, W9) and of parts that give. RT-safe. */
 class Guidance {
  public:
   explicit Guidance(const TickOptions& options) noexcept
-      : options_(options), fit_rows_(options.force_map, options.device) {}
+      : options_(options),
+        fit_rows_(options.force_map, options.device),
+        giving_rows_(MakeForceMap(options.device)) {}
 
   void Begin(const HeldPart& part) noexcept;
 
@@ -44,7 +47,7 @@ class Guidance {
 
   [[nodiscard]] const MateGuide& mates() const noexcept { return guide_; }
 
-  /** The fits hold more than the part's weight. */
+  /** The fits, or what gives, hold more than the part's weight. */
   [[nodiscard]] bool is_stuck() const noexcept { return is_stuck_; }
 
  private:
@@ -57,6 +60,7 @@ class Guidance {
   MateGuide guide_;
   FitRows fit_rows_;
   FitAxis fit_axis_;
+  GivingRows giving_rows_;
   bool is_stuck_{false};
   int captured_before_{0};
   bool is_attracting_{false};

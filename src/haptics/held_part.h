@@ -9,6 +9,7 @@
 #include "fits/fit_force.h"
 #include "fits/friction.h"
 #include "fits/iso286.h"
+#include "haptics/giving_curve.h"
 #include "haptics/rigid_group.h"
 #include "mates/capture.h"
 #include "product/product.h"
@@ -66,6 +67,12 @@ struct HeldDrive {
   double torque{0};            ///< Dry friction in its thread and under its head [N m].
 };
 
+/** A part that gives on the way of the held part to its place, or the held part itself. */
+struct HeldGive {
+  std::shared_ptr<const GivingCurve> curve;
+  double widest{0};  ///< The furthest that it gives [m].
+};
+
 /** Everything the tick needs to know of the part in the hand; built outside the tick, then
  * constant. */
 struct HeldPart {
@@ -87,6 +94,7 @@ struct HeldPart {
   std::vector<HeldMember> members;             ///< Other parts of a subassembly.
   std::vector<contact::BodyId> bodies;  ///< All that is in the hand: `body`, and the members'.
   fits::FrictionSurface surface{fits::FrictionSurface::kUnknown};
+  std::vector<HeldGive> gives;     ///< What gives against a part in its place.
   std::vector<HeldDrive> drives;   ///< Fasteners that it fits, where it is a tool.
   bool falls_when_dropped{false};  ///< Let go anywhere but in its place, it is a free body.
 

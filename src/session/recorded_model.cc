@@ -44,6 +44,7 @@ std::string CalcFingerprint(const simulation::Model& model) {
     digest.AddInt(give.flexible.value());
     digest.AddInt(give.other.value());
     digest.AddDouble(give.depth);
+    digest.AddDouble(give.curve ? haptics::CalcGivingPeak(*give.curve).in : 0.0);
   }
   for (const simulation::FaceRelief& relief : model.sequence.reliefs) {
     digest.AddInt(relief.occurrence.value());

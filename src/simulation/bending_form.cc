@@ -43,7 +43,7 @@ std::optional<Bending> FindBending(const product::Product& product, product::Occ
   if (thickness > kMostThickness * length) {
     return std::nullopt;
   }
-  return Bending{deflection * thickness / (kShape * length * length),
+  return Bending{deflection * thickness / (kShape * length * length), length, thickness,
                  p_W + inner->distance * inward_W};
 }
 

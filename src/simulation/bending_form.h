@@ -13,6 +13,8 @@ inline constexpr double kBearableStrain = 0.04;
 /** A wall or an arm of a part that has to bend aside. */
 struct Bending {
   double strain{0};             ///< Strain at its root.
+  double length{0};             ///< [m]
+  double thickness{0};          ///< [m]
   Vec3 p_back_W{Vec3::Zero()};  ///< Where its far side is, as drawn [m].
 };
 

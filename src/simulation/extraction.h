@@ -11,6 +11,7 @@
 #include "contact/scene.h"
 #include "planning/way.h"
 #include "simulation/face_reliefs.h"
+#include "simulation/giving_force.h"
 #include "simulation/sequence.h"
 #include "sweep/path.h"
 
@@ -259,6 +260,13 @@ class Extraction {
      its distance is 0 where there is none. */
     contact::Contact sideways{};
     double travelled{0};  ///< Where on the way it is [m].
+    double until{0};      ///< Where they overlap last [m].
+  };
+
+  /** A part that bends when it meets another one. */
+  struct WhatBends {
+    product::OccurrenceId part;
+    Bending bending;
   };
 
   /** What was tried last, so that it is tried again only when something has changed. */
@@ -295,6 +303,10 @@ class Extraction {
   void VisitContacts(
       product::OccurrenceId id, const Vec3& direction,
       const std::function<void(const contact::Contact& contact, double travelled)>& visit);
+  /** Looks number 0 to `last`, which are `step` apart [m]. */
+  void VisitContacts(
+      product::OccurrenceId id, const Vec3& direction, double step, int last,
+      const std::function<void(const contact::Contact& contact, double travelled)>& visit);
   /** The width that two parts may block of one another where a depth is given [m]. */
   [[nodiscard]] double CalcWidestGiven(product::OccurrenceId id, product::OccurrenceId other,
                                        const Vec3& direction, double limit) const;
@@ -302,11 +314,14 @@ class Extraction {
   [[nodiscard]] std::map<product::OccurrenceId, Meeting> MeasureMeetings(product::OccurrenceId id,
                                                                          const Vec3& direction);
   /** Which of two parts bends when they meet; none where neither bears it. */
-  [[nodiscard]] std::optional<product::OccurrenceId> FindWhatBends(product::OccurrenceId id,
-                                                                   product::OccurrenceId other,
-                                                                   const Meeting& meeting,
-                                                                   const Vec3& direction,
-                                                                   double width) const;
+  [[nodiscard]] std::optional<WhatBends> FindWhatBends(product::OccurrenceId id,
+                                                       product::OccurrenceId other,
+                                                       const Meeting& meeting,
+                                                       const Vec3& direction, double width) const;
+  /** How far a part and another one overlap across the way, all along it. @pre As VisitContacts().
+   */
+  [[nodiscard]] GivingSamples SampleGiving(product::OccurrenceId id, product::OccurrenceId other,
+                                           const Meeting& meeting, const Vec3& direction);
   /** Finds what is in the way of a part on more of its width than the two may give, a wall that it
    would have to go through, or what does not bend. @pre It is in the unit, and parts give. */
   [[nodiscard]] std::optional<Obstacle> FindTooWide(product::OccurrenceId id,

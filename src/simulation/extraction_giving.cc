@@ -8,6 +8,7 @@
 
 #include "simulation/bending_form.h"
 #include "simulation/extraction.h"
+#include "simulation/giving_force.h"
 #include "simulation/giving_width.h"
 
 namespace hvas::simulation {
@@ -101,12 +102,18 @@ void Extraction::VisitContacts(
     OccurrenceId id, const Vec3& direction,
     const std::function<void(const contact::Contact&, double travelled)>& visit) {
   const Unit unit{id};
-  const std::vector<Member> members = ListMembers(unit, direction);
   const double step = CalcStep(unit);
   const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
+  VisitContacts(id, direction, step, last, visit);
+}
+
+void Extraction::VisitContacts(
+    OccurrenceId id, const Vec3& direction, double step, int last,
+    const std::function<void(const contact::Contact&, double travelled)>& visit) {
+  const std::vector<Member> members = ListMembers({id}, direction);
+  const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     ++straight_looks_;
-    const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
                         query, &workspace_);
     for (const contact::Contact& contact : workspace_.contacts()) {
@@ -125,6 +132,7 @@ std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(Occurren
     }
     Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
     meeting.depth = std::max(meeting.depth, -contact.distance);
+    meeting.until = contact.distance < 0 ? travelled : meeting.until;
     if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
         contact.distance < meeting.sideways.distance) {
       meeting.sideways = contact;
@@ -134,9 +142,10 @@ std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(Occurren
   return meetings;
 }
 
-std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
-                                                      const Meeting& meeting, const Vec3& direction,
-                                                      double width) const {
+std::optional<Extraction::WhatBends> Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
+                                                               const Meeting& meeting,
+                                                               const Vec3& direction,
+                                                               double width) const {
   if (!(meeting.sideways.distance < 0)) {
     return std::nullopt;  // It would have to be pushed through, not aside.
   }
@@ -145,29 +154,59 @@ std::optional<OccurrenceId> Extraction::FindWhatBends(OccurrenceId id, Occurrenc
   const Vec3 aside_W = (nhat_W - nhat_W.dot(direction) * direction).normalized();
   const Vec3 travel_W = meeting.travelled * direction;
   // The part that bends is looked at as drawn, and so is the one that it must have room beside.
-  const auto calc_strain = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W,
-                               const Vec3& inward_W) {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    if (IsStatedRigid(part)) {
-      return kNone;
-    }
+  std::optional<WhatBends> least;
+  const auto look = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W,
+                        const Vec3& inward_W) {
     const auto bending =
         simulation::FindBending(product_, part, p_W - moved_W, inward_W, direction, width);
     const Vec3 moved_beside_W = travel_W - moved_W;
-    return bending && HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W,
-                                    inward_W, width)
-               ? bending->strain
-               : kNone;
+    if (bending && bending->strain <= kBearableStrain &&
+        (!least || bending->strain < least->bending.strain) &&
+        HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W, inward_W,
+                      width)) {
+      least = WhatBends{part, *bending};
+    }
   };
-  // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked at.
-  const auto calc_least = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W) {
-    return std::min(calc_strain(part, beside, moved_W, aside_W),
-                    calc_strain(part, beside, moved_W, -aside_W));
-  };
-  const double own = calc_least(id, other, travel_W);
-  const double others = calc_least(other, id, Vec3::Zero());
-  return std::min(own, others) > kBearableStrain ? std::nullopt
-                                                 : std::optional(own <= others ? id : other);
+  for (const bool is_own : {true, false}) {
+    const OccurrenceId part = is_own ? id : other;
+    if (!IsStatedRigid(part)) {
+      // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked
+      // at.
+      for (const Vec3& inward_W : {aside_W, Vec3(-aside_W)}) {
+        look(part, is_own ? other : id, is_own ? travel_W : Vec3::Zero(), inward_W);
+      }
+    }
+  }
+  return least;
+}
+
+GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, const Meeting& meeting,
+                                       const Vec3& direction) {
+  constexpr int kSamples = 120;         // A choice: ramps of a hook have some tens of them.
+  constexpr double kFinest = 10e-6;     // [m]; contact is no finer.
+  constexpr double kLeastAcross = 0.3;  // Normals that lead on say nothing of how far it gives.
+  const Vec3& n_W = meeting.sideways.nhat_W;
+  const Vec3 across_W = direction.cross(n_W).normalized();
+  GivingSamples samples;
+  samples.spacing = std::max(kFinest, (meeting.until + CalcStep({id})) / kSamples);
+  samples.given.assign(kSamples + 1, 0.0);
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  VisitContacts(id, direction, samples.spacing, kSamples,
+                [&](const contact::Contact& contact, double travelled) {
+                  const Vec3& nhat_W = contact.nhat_W;
+                  const double aside = (nhat_W - nhat_W.dot(direction) * direction).norm();
+                  if (!contact.body.is_valid() || contact.distance >= 0 || aside < kLeastAcross ||
+                      OccurrenceId(contact.body.index()) != other) {
+                    return;
+                  }
+                  const auto i = static_cast<std::size_t>(std::lround(travelled / samples.spacing));
+                  samples.given[i] = std::max(samples.given[i], -contact.distance / aside);
+                  low = std::min(low, across_W.dot(contact.p_WC));
+                  high = std::max(high, across_W.dot(contact.p_WC));
+                });
+  samples.breadth = std::max(0.0, high - low);
+  return samples;
 }
 
 double Extraction::CalcWidestGiven(OccurrenceId id, OccurrenceId other, const Vec3& direction,
@@ -215,9 +254,16 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
 void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
   SetUnit({id}, true);
   const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
+  std::map<OccurrenceId, GivingSamples> samples;
+  for (const auto& [other, meeting] : meetings) {
+    samples[other] = SampleGiving(id, other, meeting, direction);
+  }
   SetUnit({id}, false);
   for (const auto& [other, meeting] : meetings) {
-    GivingPair give{id, other, meeting.depth};
+    GivingPair give;
+    give.flexible = id;
+    give.other = other;
+    give.depth = meeting.depth;
     const product::FlexiblePart* own = FindFlexible(product_, id);
     const product::FlexiblePart* others = FindFlexible(product_, other);
     const auto limit_of = [](const product::FlexiblePart* part) {
@@ -228,11 +274,16 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
         CalcGivingWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
     const auto bending = FindWhatBends(id, other, meeting, direction, give.width);
     const bool is_known = limit > 0 && give.width <= limit;
-    const bool is_own = is_known || !bending ? limit_of(own) >= limit_of(others) : *bending == id;
+    const bool is_own =
+        is_known || !bending ? limit_of(own) >= limit_of(others) : bending->part == id;
     give.kind = !is_known ? product::FlexibleKind::kForm : is_own ? own->kind : others->kind;
     if (!is_own) {
       std::swap(give.flexible, give.other);
     }
+    give.moved = id;
+    give.curve =
+        MakeGivingCurve(product_, give, samples[other],
+                        bending && bending->part == give.flexible ? &bending->bending : nullptr);
     gives_.push_back(give);
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
     allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);

@@ -110,6 +110,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   held->has_bent_way = !step.way.empty();
   held->left_out = ListTogetherBodies(step);
   held->allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
+  AddGives(id, held.get());
   AddMembers(step, held.get());
   held->bodies = {held->body};
   for (const haptics::HeldMember& member : held->members) {
@@ -225,6 +226,15 @@ void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held)
     drive.travel = FindLead(model_.product->part_of(fastener.occurrence)) / units::kTurn;
     drive.torque = model_.accessories.fastener_torque;
     held->drives.push_back(drive);
+  }
+}
+
+void HeldPartMaker::AddGives(OccurrenceId id, haptics::HeldPart* held) const {
+  for (const GivingPair& give : model_.sequence.gives) {
+    const OccurrenceId partner = give.flexible == id ? give.other : give.flexible;
+    if (give.moved == id && give.curve && parts_[partner.index()].placement == Placement::kPlaced) {
+      held->gives.push_back({give.curve, std::max(give.width, give.depth)});
+    }
   }
 }
 

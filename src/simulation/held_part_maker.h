@@ -42,6 +42,8 @@ class HeldPartMaker {
  private:
   /** Adds the fasteners in their place that a tool fits. */
   void AddDrives(const SequenceStep& step, haptics::HeldPart* held) const;
+  /** Adds what gives on its way against parts in their places. */
+  void AddGives(product::OccurrenceId id, haptics::HeldPart* held) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
   /** Adds mates with parts of this placement.
    @param target  Null: any of them; else these alone. */

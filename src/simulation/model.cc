@@ -555,7 +555,7 @@ Result<std::shared_ptr<const Model>> CompileFirst(
   first.shape.stop = options.shape.stop;
   first.way_looks = 0;
   Diagnostics unheeded;
-  const auto compiled = CompileWithShapes(product, shapes, first, nullptr, &unheeded);
+  auto compiled = CompileWithShapes(product, shapes, first, nullptr, &unheeded);
   if (!compiled) {
     return compiled;
   }

@@ -137,6 +137,7 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
                             is_a ? overlap.faces_a : overlap.faces_b,
                             is_a ? overlap.faces_b : overlap.faces_a,
                             {},
+                            {},
                             {}});
     }
   }
@@ -145,15 +146,17 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
     if (is_own || is_met(give.other, give.flexible)) {
       const OccurrenceId own = is_own ? give.flexible : give.other;
       const OccurrenceId other = is_own ? give.other : give.flexible;
-      allowances.push_back({PartAllowance::Kind::kGive,
-                            own,
-                            other,
-                            std::max(give.width, give.depth),
-                            false,
-                            {},
-                            {},
-                            give.flexible,
-                            give.kind});
+      allowances.push_back(
+          {PartAllowance::Kind::kGive,
+           own,
+           other,
+           std::max(give.width, give.depth),
+           false,
+           {},
+           {},
+           give.flexible,
+           give.kind,
+           give.curve ? haptics::CalcGivingPeak(*give.curve) : haptics::GivingPeak()});
     }
   }
   return allowances;
@@ -185,9 +188,14 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
                           units::ToMm(deepest->depth), PathOf(deepest->other), more);
       continue;
     }
-    text += fmt::format("goes in by giving {:.2f} mm ({}{})", units::ToMm(deepest->depth),
-                        product::ToString(deepest->flexible_kind),
-                        deepest->flexible == deepest->own ? "" : ": " + PathOf(deepest->flexible));
+    const std::string who =
+        deepest->flexible == deepest->own ? "" : ": " + PathOf(deepest->flexible);
+    const std::string force =
+        deepest->force.in > 0
+            ? fmt::format(", {:.3g} N in, {:.3g} N out", deepest->force.in, deepest->force.out)
+            : "";
+    text += fmt::format("goes in by giving {:.2f} mm ({}{}{})", units::ToMm(deepest->depth),
+                        product::ToString(deepest->flexible_kind), who, force);
   }
   return text;
 }

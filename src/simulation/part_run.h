@@ -33,6 +33,8 @@ struct PartAllowance {
   std::vector<std::uint32_t> other_faces;  ///< kDrawn: those of the other part.
   product::OccurrenceId flexible;          ///< kGive: the one that gives.
   product::FlexibleKind flexible_kind{product::FlexibleKind::kStated};  ///< kGive: why it may.
+  /** kGive: the largest forces that it takes, in and out, true [N]; 0 where none is known. */
+  haptics::GivingPeak force{};
 };
 
 /** How one part fared. */

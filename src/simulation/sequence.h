@@ -84,6 +84,10 @@ struct GivingPair {
   double depth{0};  ///< Depth of contact on the way [m].
   double width{0};  ///< How far it gives sideways [m] (CalcGivingWidth).
   product::FlexibleKind kind{product::FlexibleKind::kStated};  ///< Why it may.
+  product::OccurrenceId moved;                                 ///< The one on its way.
+  /** What it takes, along the way of the one that is moved; null where no formula is known for it.
+   */
+  std::shared_ptr<const haptics::GivingCurve> curve;
 };
 
 /** How far a face gives way where it lies in another part as drawn, or would on its way in. */

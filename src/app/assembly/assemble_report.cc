@@ -53,6 +53,10 @@ nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance
   } else {
     json["flexible"] = PathOf(model, allowance.flexible);
     json["flexible_kind"] = ToString(allowance.flexible_kind);
+    if (allowance.force.in > 0) {
+      json["force_in_n"] = allowance.force.in;
+      json["force_out_n"] = allowance.force.out;
+    }
   }
   return json;
 }

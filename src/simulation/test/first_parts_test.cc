@@ -17,6 +17,8 @@ constexpr std::size_t kBlockIndex = 0;
 constexpr std::size_t kPegIndex = 1;
 constexpr std::size_t kCollarIndex = 2;
 
+using product::OccurrenceId;
+using product::Product;
 using SharedModel = std::shared_ptr<const Model>;
 
 /** The models of the first parts, and the one of all parts. */

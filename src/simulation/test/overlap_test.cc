@@ -342,7 +342,16 @@ TEST(GiveTest, RingGoesOverALandByGivingAsMuchAsItHasTo) {
   EXPECT_EQ(ring.allowances[0].kind, PartAllowance::Kind::kGive);
   EXPECT_NEAR(ring.allowances[0].depth, 0.5e-3, 50e-6);
   EXPECT_PRED_FORMAT2(IsSubstring, "goes in by giving 0.", ring.note);
-  EXPECT_PRED_FORMAT2(IsSubstring, " mm (retaining ring)", ring.note);
+  EXPECT_PRED_FORMAT2(IsSubstring, " mm (retaining ring, ", ring.note);
+  // A ring of these dimensions over an edge that is drawn square, hence of 60 degrees. As the ring
+  // has no gap, its width is estimated a seventh too large from its volume.
+  const double across = fits::CalcSpreadStiffness({5.75e-3, 2.5e-3, 1e-3, 206e9}) * 0.5e-3;
+  const double along = across * fits::CalcSlidingRatio(0.15, std::sqrt(3.0));
+  EXPECT_GT(ring.allowances[0].force.in, along);
+  EXPECT_LT(ring.allowances[0].force.in, 1.7 * along);
+  // The edge is so short that a tick may pass over its largest force.
+  EXPECT_GT(ring.fit_true, 0.6 * ring.allowances[0].force.in);
+  EXPECT_LT(ring.fit_true, 1.01 * ring.allowances[0].force.in);
 }
 
 TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {
@@ -364,7 +373,9 @@ TEST(GiveTest, AWallThatBendsSnapsOverABeadWithoutANameThatTellsOfIt) {
   const PartResult cap = Assemble(model);
   EXPECT_TRUE(cap.is_seated) << cap.reason;
   EXPECT_EQ(cap.allowances.size(), 1U);
-  EXPECT_PRED_FORMAT2(IsSubstring, " mm (a wall that bends)", cap.note);
+  EXPECT_PRED_FORMAT2(IsSubstring, " mm (a wall that bends, ", cap.note);
+  EXPECT_GT(cap.allowances[0].force.in, 1);
+  EXPECT_NEAR(cap.fit_true, cap.allowances[0].force.in, 0.1 * cap.allowances[0].force.in);
 }
 
 TEST(GiveTest, AWallThatIsThickOrStatedToBeRigidDoesNotBend) {

@@ -71,7 +71,7 @@ class FirstPartsTest : public ::testing::Test {
     };
   }
 
-  ~FirstPartsTest() override { bench_.Stop(); }
+  void TearDown() override { bench_.Stop(); }
 
   std::optional<Json> AwaitWhole(double seconds) {
     return log_.Await(

@@ -1,0 +1,61 @@
+#include "fits/elastic_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace hvas::fits {
+namespace {
+
+// Bayer, Snap-Fit Joints for Plastics, table 1: a rectangular section, and one that tapers to half.
+constexpr double kConstantSection = 0.67;
+constexpr double kTaperedSection = 1.09;
+// Share of the section up to which Lindley compared his formula with rubber.
+constexpr double kMostSqueeze = 0.5;
+
+double ShapeOf(const SnapArm& arm) {
+  return arm.is_tapered ? kTaperedSection : kConstantSection;
+}
+
+double RiseOfSqueeze(const ORing& ring, double share) {
+  return std::numbers::pi * ring.diameter * ring.modulus *
+         (1.25 * 1.5 * std::sqrt(share) + 50 * 6 * std::pow(share, 5));
+}
+
+}  // namespace
+
+double CalcArmDeflection(const SnapArm& arm, double strain) {
+  return ShapeOf(arm) * strain * arm.length * arm.length / arm.thickness;
+}
+
+double CalcArmStiffness(const SnapArm& arm) {
+  const double h = arm.thickness;
+  const double l = arm.length;
+  return arm.width * h * h * h * arm.modulus / (6 * ShapeOf(arm) * l * l * l);
+}
+
+double CalcSlidingRatio(double friction, double slope) {
+  const double rest = 1 - friction * slope;
+  return rest > 0 ? (friction + slope) / rest : std::numeric_limits<double>::infinity();
+}
+
+double CalcSqueezeForce(const ORing& ring, double squeeze) noexcept {
+  const double share = std::clamp(squeeze / ring.section, 0.0, kMostSqueeze);
+  const double beyond = std::max(0.0, squeeze - kMostSqueeze * ring.section);
+  return std::numbers::pi * ring.diameter * ring.section * ring.modulus *
+             (1.25 * std::pow(share, 1.5) + 50 * std::pow(share, 6)) +
+         beyond * RiseOfSqueeze(ring, kMostSqueeze);
+}
+
+double CalcSqueezeStiffness(const ORing& ring, double squeeze) noexcept {
+  return RiseOfSqueeze(ring, std::clamp(squeeze / ring.section, 0.0, kMostSqueeze));
+}
+
+double CalcSpreadStiffness(const OpenRing& ring) {
+  const double inertia = ring.thickness * ring.width * ring.width * ring.width / 12;
+  return 4 * std::numbers::pi * ring.modulus * inertia /
+         (3 * ring.radius * ring.radius * ring.radius);
+}
+
+}  // namespace hvas::fits

@@ -1,0 +1,64 @@
+#pragma once
+
+/** Forces of parts that give elastically on their way: closed forms of snap hooks, O-rings and
+ retaining rings. docs/algorithms/flexible.md compares them with published examples. */
+namespace hvas::fits {
+
+/** An arm of rectangular section that bends aside: a snap hook, a wall. */
+struct SnapArm {
+  double length{0};        ///< l, from its root to the hook [m].
+  double width{0};         ///< b, across the way and the deflection [m].
+  double thickness{0};     ///< h, at its root, along the deflection [m].
+  double modulus{0};       ///< Secant modulus of its material [Pa].
+  bool is_tapered{false};  ///< Its thickness falls to half of it at the hook.
+};
+
+/** Deflection of its end at which the root has a strain.
+ y = 0.67 eps l^2 / h, tapered y = 1.09 eps l^2 / h.
+ Source: Bayer MaterialScience, Snap-Fit Joints for Plastics, table 1, shapes 1 and 2. */
+[[nodiscard]] double CalcArmDeflection(const SnapArm& arm, double strain);
+
+/** Force across the arm for each metre of its deflection [N/m]: P = b h^2 / 6 Es eps / l.
+ Source: as CalcArmDeflection(). */
+[[nodiscard]] double CalcArmStiffness(const SnapArm& arm);
+
+/** Force along the way for each newton across it, where one surface slides up another:
+ (mu + m) / (1 - mu m); infinite where the two lock themselves.
+ Source: Bayer MaterialScience, Snap-Fit Joints for Plastics, mating force.
+ @param slope  m, rise of the surface over the way; negative: it slides down. */
+[[nodiscard]] double CalcSlidingRatio(double friction, double slope);
+
+/** An O-ring. */
+struct ORing {
+  double diameter{0};  ///< D, of the middle of its section [m].
+  double section{0};   ///< d [m]
+  double modulus{0};   ///< E of the rubber [Pa].
+};
+
+/** Force on the whole ring that is squeezed between two surfaces.
+ F = pi D d E (1.25 C^1.5 + 50 C^6), C = squeeze / d.
+ Source: Lindley, Load-compression relationships of rubber units, J. Strain Analysis 2 (1967), as
+ Green and English (1994) quote it.
+ @param squeeze  How much flatter the section becomes, 0 at least [m]. It is known up to half of the
+ section; beyond, the force rises by the slope there. */
+[[nodiscard]] double CalcSqueezeForce(const ORing& ring, double squeeze) noexcept;
+
+/** Slope of CalcSqueezeForce() [N/m]. */
+[[nodiscard]] double CalcSqueezeStiffness(const ORing& ring, double squeeze) noexcept;
+
+/** An open ring of rectangular section that is spread, or closed, by uniform pressure. */
+struct OpenRing {
+  double radius{0};     ///< Radius of the middle of its section [m].
+  double width{0};      ///< Radial width of its section [m].
+  double thickness{0};  ///< Width of its section along the axis [m].
+  double modulus{0};    ///< [Pa]
+};
+
+/** Radial force on the whole ring for each metre by which its radius grows [N/m]:
+ 4 pi E I / (3 r^3), I = thickness width^3 / 12. Uniform pressure opens the gap of a curved beam by
+ 3 pi p r^4 / (E I), a ring that stays round by 2 pi times the growth of its radius.
+ Source: Castigliano's theorem for a thin curved beam, as Timoshenko, Strength of Materials II,
+ has it for piston rings. */
+[[nodiscard]] double CalcSpreadStiffness(const OpenRing& ring);
+
+}  // namespace hvas::fits

@@ -1,0 +1,86 @@
+// Parts that give elastically, against published examples, integrals and energies.
+
+#include "fits/elastic_parts.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace hvas::fits {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+// Bayer MaterialScience, Snap-Fit Joints for Plastics, calculation example: a hook of polycarbonate
+// that tapers to half: h 3.28 mm, P 32.5 N, W 58.5 N at mu 0.6 and 30 degrees.
+TEST(SnapArm, IsThatOfThePublishedExample) {
+  const double strain = 0.02;
+  const double undercut = 2.4 * kMm;
+  SnapArm arm{19 * kMm, 9.5 * kMm, 1.0, 1815e6, true};
+  arm.thickness = CalcArmDeflection(arm, strain) / undercut;  // y h is the same for each h.
+  EXPECT_NEAR(arm.thickness, 3.279 * kMm, 0.001 * kMm);
+  EXPECT_NEAR(CalcArmDeflection(arm, strain), undercut, 1e-12);
+  const double across = CalcArmStiffness(arm) * undercut;
+  EXPECT_NEAR(across, 32.53, 0.01);
+  const double slope = std::tan(30 * std::numbers::pi / 180);
+  EXPECT_NEAR(across * CalcSlidingRatio(0.6, slope), 58.59, 0.01);
+}
+
+// A cantilever of constant section has 3 E I / l^3; Bayer's 0.67 is two thirds.
+TEST(SnapArm, OfConstantSectionIsACantilever) {
+  const SnapArm arm{20 * kMm, 6 * kMm, 2 * kMm, 2e9};
+  const double inertia = arm.width * std::pow(arm.thickness, 3) / 12;
+  const double exact = 3 * arm.modulus * inertia / std::pow(arm.length, 3);
+  EXPECT_NEAR(CalcArmStiffness(arm), exact, 0.006 * exact);
+}
+
+// BASF's example of a hook with the same friction and angle: 7.31 lbf across, 13.17 lbf along.
+TEST(SlidingRatio, IsThatOfPublishedPairs) {
+  EXPECT_NEAR(CalcSlidingRatio(0.6, std::tan(std::numbers::pi / 6)), 13.17 / 7.31, 1e-3);
+  EXPECT_DOUBLE_EQ(CalcSlidingRatio(0, 0.5), 0.5);
+  EXPECT_DOUBLE_EQ(CalcSlidingRatio(0.3, -0.3), 0);
+  EXPECT_TRUE(std::isinf(CalcSlidingRatio(0.5, 2)));
+}
+
+// Green and English (1994) after Lindley: 318.8 N for d 3.53, D 50 mm, 5 MPa, 20 %.
+TEST(ORing, IsSqueezedByThePublishedForce) {
+  const ORing ring{50 * kMm, 3.53 * kMm, 5e6};
+  EXPECT_NEAR(CalcSqueezeForce(ring, 0.2 * ring.section), 318.8, 0.1);
+  EXPECT_NEAR(CalcSqueezeForce(ring, 0.1 * ring.section), 109.73, 0.01);
+  EXPECT_NEAR(CalcSqueezeForce({20 * kMm, 2.62 * kMm, 5e6}, 0.2 * 2.62 * kMm), 94.659, 0.001);
+  EXPECT_EQ(CalcSqueezeForce(ring, 0), 0);
+  EXPECT_EQ(CalcSqueezeForce(ring, -1e-3), 0);
+}
+
+TEST(ORing, HasTheSlopeOfItsForce) {
+  const ORing ring{50 * kMm, 3.53 * kMm, 5e6};
+  constexpr double kStep = 1e-8;
+  for (const double share : {0.05, 0.2, 0.4, 0.49, 0.6}) {
+    const double y = share * ring.section;
+    const double slope =
+        (CalcSqueezeForce(ring, y + kStep) - CalcSqueezeForce(ring, y - kStep)) / (2 * kStep);
+    EXPECT_NEAR(CalcSqueezeStiffness(ring, y), slope, 1e-4 * slope) << share;
+  }
+}
+
+// The work of the bending moments p b r^2 (1 + cos phi) of a curved beam, summed up.
+TEST(OpenRing, OpensAsTheSumOfItsBendingMoments) {
+  const OpenRing ring{10 * kMm, 2.6 * kMm, 1.2 * kMm, 210e9};
+  const double inertia = ring.thickness * std::pow(ring.width, 3) / 12;
+  const double pressure = 1e3;  // Along the circumference [N/m].
+  double gap = 0;
+  constexpr int kSteps = 10'000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double phi = std::numbers::pi * ((2 * i + 1.0) / kSteps - 1);
+    const double moment = pressure * ring.radius * ring.radius * (1 + std::cos(phi));
+    gap += moment * ring.radius * (1 + std::cos(phi)) / (ring.modulus * inertia) * ring.radius * 2 *
+           std::numbers::pi / kSteps;
+  }
+  const double growth = gap / (2 * std::numbers::pi);
+  const double force = 2 * std::numbers::pi * ring.radius * pressure;
+  EXPECT_NEAR(CalcSpreadStiffness(ring), force / growth, 1e-6 * force / growth);
+}
+
+}  // namespace
+}  // namespace hvas::fits

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "haptics/giving_curve.h"
+#include "simulation/bending_form.h"
+#include "simulation/sequence.h"
+
+/** What it takes to pass a part that gives: docs/algorithms/flexible.md. */
+namespace hvas::simulation {
+
+/** How far two parts overlap across the way of one of them. */
+struct GivingSamples {
+  double spacing{1};          ///< [m]
+  std::vector<double> given;  ///< Overlap at each sample, from the part's place outwards, >= 0 [m].
+  double breadth{0};          ///< How broad they overlap, across way and deflection [m].
+};
+
+/** The forces of a pair along the way of the part that is moved; null where no formula is known for
+ its kind, or its dimensions are not to be had.
+ @param bending  The arm, where the part that gives is a hook or a wall; else null. */
+[[nodiscard]] std::shared_ptr<const haptics::GivingCurve> MakeGivingCurve(
+    const product::Product& product, const GivingPair& give, const GivingSamples& samples,
+    const Bending* bending);
+
+}  // namespace hvas::simulation
