@@ -52,6 +52,11 @@ double CalcSqueezeStiffness(const ORing& ring, double squeeze) noexcept {
   return RiseOfSqueeze(ring, std::clamp(squeeze / ring.section, 0.0, kMostSqueeze));
 }
 
+double CalcStretchStiffness(const ORing& ring) {
+  const double area = 0.25 * std::numbers::pi * ring.section * ring.section;
+  return 2 * std::numbers::pi * ring.modulus * area / (0.5 * ring.diameter);
+}
+
 double CalcSpreadStiffness(const OpenRing& ring) {
   const double inertia = ring.thickness * ring.width * ring.width * ring.width / 12;
   return 4 * std::numbers::pi * ring.modulus * inertia /

@@ -92,7 +92,12 @@ std::shared_ptr<const haptics::GivingCurve> MakeGivingCurve(const product::Produ
   auto curve = std::make_shared<haptics::GivingCurve>();
   switch (give.kind) {
     case FlexibleKind::kORing:
-      curve->squeezed = ORingOf(part);
+      // Put over its shaft it stretches freely; in its groove it is squeezed by what passes.
+      if (const auto ring = ORingOf(part); ring && give.moved == give.flexible) {
+        curve->stiffness = fits::CalcStretchStiffness(*ring);
+      } else {
+        curve->squeezed = ring;
+      }
       break;
     case FlexibleKind::kRetainingRing:
       if (const auto ring = OpenRingOf(part)) {

@@ -64,6 +64,16 @@ TEST(ORing, HasTheSlopeOfItsForce) {
   }
 }
 
+// Hoop tension times the growth of the circumference is the force times that of the radius.
+TEST(ORing, IsStretchedByItsHoopTension) {
+  const ORing ring{20 * kMm, 2 * kMm, 5e6};
+  const double growth = 0.1 * kMm;
+  const double area = std::numbers::pi * kMm * kMm;
+  const double tension = ring.modulus * area * growth / (10 * kMm);
+  const double work = tension * 2 * std::numbers::pi * growth;
+  EXPECT_NEAR(CalcStretchStiffness(ring) * growth * growth, work, 1e-9 * work);
+}
+
 // The work of the bending moments p b r^2 (1 + cos phi) of a curved beam, summed up.
 TEST(OpenRing, OpensAsTheSumOfItsBendingMoments) {
   const OpenRing ring{10 * kMm, 2.6 * kMm, 1.2 * kMm, 210e9};
