@@ -121,6 +121,8 @@ void WriteStep(const Drawing& drawing, const std::string& path);
 [[nodiscard]] Drawing DrawFrame500();
 /** Twelve parts in arbitrary poses, with mates that say how they go together. */
 [[nodiscard]] Drawing DrawLooseTwelve();
+/** Parts that give: an O-ring, a retaining ring and a cover with two snap hooks. */
+[[nodiscard]] Drawing DrawSnapJoint();
 
 namespace materials {
 inline const Material kSteel{"Steel C45", 7850};
@@ -132,6 +134,7 @@ inline const Material kBronze{"Bronze CuSn8", 8800};
 inline const Material kBrass{"Brass CuZn39Pb3", 8470};
 inline const Material kCopper{"Copper", 8960};
 inline const Material kRubber{"NBR", 1200};
+inline const Material kAbs{"ABS", 1050};
 inline const Material kAluminium{"Aluminium EN AW-6082", 2700};
 }  // namespace materials
 

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     hvas::products::WriteProduct(hvas::products::DrawFrame500(), argv[1]);
     hvas::products::WriteProduct(hvas::products::DrawLooseTwelve(), argv[1]);
     hvas::products::WriteProduct(hvas::products::DrawFitRig(), argv[1]);
+    hvas::products::WriteProduct(hvas::products::DrawSnapJoint(), argv[1]);
     const std::filesystem::path tools = std::filesystem::path(argv[1]) / "tools";
     std::filesystem::create_directories(tools);
     for (const hvas::products::Drawing& tool : hvas::products::DrawTools()) {

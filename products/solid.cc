@@ -17,6 +17,7 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
 #include <GC_MakeArcOfCircle.hxx>
 #include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
@@ -103,6 +104,26 @@ Solid Tube(double outer_diameter, double inner_diameter, double z0, double z1, d
     section.push_back({ri, z0 + inner_chamfer});
   }
   return Turn(section);
+}
+
+Solid Torus(double radius, double section_radius) {
+  return {BRepPrimAPI_MakeTorus(radius, section_radius).Shape(),
+          2 * pi * pi * radius * section_radius * section_radius};
+}
+
+Solid ExtrudeAlongY(const std::vector<XZ>& section, double y0, double y1) {
+  BRepBuilderAPI_MakePolygon polygon;
+  double twice_area = 0;
+  for (std::size_t i = 0; i < section.size(); ++i) {
+    const auto [x_0, z_0] = section[i];
+    const auto [x_1, z_1] = section[(i + 1) % section.size()];
+    polygon.Add(gp_Pnt(x_0, y0, z_0));
+    twice_area += x_0 * z_1 - x_1 * z_0;
+  }
+  polygon.Close();
+  const BRepBuilderAPI_MakeFace face(polygon.Wire(), /*OnlyPlane=*/true);
+  const TopoDS_Shape shape = BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, y1 - y0, 0)).Shape();
+  return {CalcVolume(shape) < 0 ? shape.Reversed() : shape, 0.5 * std::abs(twice_area) * (y1 - y0)};
 }
 
 Solid Box(double x0, double y0, double z0, double x1, double y1, double z1) {

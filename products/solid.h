@@ -36,6 +36,18 @@ struct RadiusHeight {
 [[nodiscard]] Solid Tube(double outer_diameter, double inner_diameter, double z0, double z1,
                          double outer_chamfer = 0, double inner_chamfer = 0);
 
+/** A ring about z whose section is a circle; `radius` is that of the middle of its section. */
+[[nodiscard]] Solid Torus(double radius, double section_radius);
+
+/** A point of a section in the plane of x and z. */
+struct XZ {
+  double x{0};
+  double z{0};
+};
+
+/** The prism of a closed polygon between two planes across y. */
+[[nodiscard]] Solid ExtrudeAlongY(const std::vector<XZ>& section, double y0, double y1);
+
 [[nodiscard]] Solid Box(double x0, double y0, double z0, double x1, double y1, double z1);
 
 /** Rounded rectangle of the given sizes about z, from `z0` to `z1`. */

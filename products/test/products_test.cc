@@ -209,6 +209,36 @@ TEST(LooseTwelve, FilesAreWhatTheProgramWrites) {
   ExpectFilesAsStored(DrawLooseTwelve());
 }
 
+TEST(FitRig, FilesAreWhatTheProgramWrites) {
+  ExpectFilesAsStored(DrawFitRig());
+}
+
+TEST(SnapJoint, FilesAreWhatTheProgramWrites) {
+  ExpectFilesAsStored(DrawSnapJoint());
+}
+
+TEST(SnapJoint, VolumesByHandAndByKernelAgree) {
+  ExpectHandVolumes(DrawSnapJoint());
+}
+
+// The O-ring is drawn with its own section: the sleeve has a tenth of it, and nothing else
+// overlaps.
+TEST(SnapJoint, OnlyTheSleeveOverlapsTheORing) {
+  const Drawing drawing = DrawSnapJoint();
+  const std::vector<PlacedPart> placed = Flatten(drawing);
+  Relations relations;
+  int overlaps = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    for (std::size_t j = i + 1; j < placed.size(); ++j) {
+      const bool is_squeezed = placed[i].name == "O-ring" && placed[j].name == "sleeve";
+      const double common = relations.CalcCommonVolume(placed[i], placed[j]);
+      overlaps += is_squeezed && common > 1 ? 1 : 0;
+      EXPECT_TRUE(is_squeezed || common < 1e-3) << placed[i].path << " and " << placed[j].path;
+    }
+  }
+  EXPECT_EQ(overlaps, 1);
+}
+
 TEST(Bushing, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawBushing());
 }

@@ -260,7 +260,6 @@ class Extraction {
      its distance is 0 where there is none. */
     contact::Contact sideways{};
     double travelled{0};  ///< Where on the way it is [m].
-    double until{0};      ///< Where they overlap last [m].
   };
 
   /** A part that bends when it meets another one. */
@@ -303,9 +302,10 @@ class Extraction {
   void VisitContacts(
       product::OccurrenceId id, const Vec3& direction,
       const std::function<void(const contact::Contact& contact, double travelled)>& visit);
-  /** Looks number 0 to `last`, which are `step` apart [m]. */
+  /** Calls it for looks number 0 to `last`, which are `step` apart [m]. */
   void VisitContacts(
-      product::OccurrenceId id, const Vec3& direction, double step, int last,
+      product::OccurrenceId id, const Vec3& direction, const contact::QueryOptions& query,
+      double step, int last,
       const std::function<void(const contact::Contact& contact, double travelled)>& visit);
   /** The width that two parts may block of one another where a depth is given [m]. */
   [[nodiscard]] double CalcWidestGiven(product::OccurrenceId id, product::OccurrenceId other,
@@ -318,10 +318,13 @@ class Extraction {
                                                        product::OccurrenceId other,
                                                        const Meeting& meeting,
                                                        const Vec3& direction, double width) const;
-  /** How far a part and another one overlap across the way, all along it. @pre As VisitContacts().
-   */
+  /** How far a part and another one overlap across the way, all along it. */
   [[nodiscard]] GivingSamples SampleGiving(product::OccurrenceId id, product::OccurrenceId other,
-                                           const Meeting& meeting, const Vec3& direction);
+                                           const Vec3& direction);
+  /** What squeezes an O-ring on its way between two parts by more than its section bears: stretched
+   over one of them alone it gives far more. @pre As VisitContacts(). */
+  [[nodiscard]] std::optional<Obstacle> FindSqueezed(product::OccurrenceId id,
+                                                     const Vec3& direction);
   /** Finds what is in the way of a part on more of its width than the two may give, a wall that it
    would have to go through, or what does not bend. @pre It is in the unit, and parts give. */
   [[nodiscard]] std::optional<Obstacle> FindTooWide(product::OccurrenceId id,

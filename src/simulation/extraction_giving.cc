@@ -1,6 +1,7 @@
 // Ways on which parts give: docs/algorithms/flexible.md.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -20,6 +21,9 @@ using product::OccurrenceId;
 // What a wall or an arm that no name tells of may be bent aside at most: as a named snap hook.
 constexpr double kUndercut = 0.05;         // Of the longest side of the smaller part.
 constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
+constexpr double kSideways = 0.5;          // Normals within 30 degrees of across the way: a choice.
+// Share of an O-ring's section; usual glands squeeze it by 10 to 30 %. A choice.
+constexpr double kMostSqueeze = 0.4;
 
 }  // namespace
 
@@ -101,17 +105,15 @@ std::optional<SequenceStep> Extraction::TryRemoveBending(Unit* rest, const Unit&
 void Extraction::VisitContacts(
     OccurrenceId id, const Vec3& direction,
     const std::function<void(const contact::Contact&, double travelled)>& visit) {
-  const Unit unit{id};
-  const double step = CalcStep(unit);
-  const int last = static_cast<int>(CalcExitDistance(unit, direction) / step);
-  VisitContacts(id, direction, step, last, visit);
+  const std::vector<Member> members = ListMembers({id}, direction);
+  const double step = CalcStep({id});
+  VisitContacts(id, direction, MakeQuery(members[0], kDepthTolerance), step,
+                static_cast<int>(CalcExitDistance({id}, direction) / step), visit);
 }
 
 void Extraction::VisitContacts(
-    OccurrenceId id, const Vec3& direction, double step, int last,
-    const std::function<void(const contact::Contact&, double travelled)>& visit) {
-  const std::vector<Member> members = ListMembers({id}, direction);
-  const contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
+    OccurrenceId id, const Vec3& direction, const contact::QueryOptions& query, double step,
+    int last, const std::function<void(const contact::Contact&, double travelled)>& visit) {
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     ++straight_looks_;
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
@@ -124,7 +126,6 @@ void Extraction::VisitContacts(
 
 std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(OccurrenceId id,
                                                                         const Vec3& direction) {
-  constexpr double kAcross = 0.5;  // Normals within 30 degrees of across the way: a choice.
   std::map<OccurrenceId, Meeting> meetings;
   VisitContacts(id, direction, [&](const contact::Contact& contact, double travelled) {
     if (!contact.body.is_valid()) {
@@ -132,8 +133,7 @@ std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(Occurren
     }
     Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
     meeting.depth = std::max(meeting.depth, -contact.distance);
-    meeting.until = contact.distance < 0 ? travelled : meeting.until;
-    if (std::abs(contact.nhat_W.dot(direction)) < kAcross &&
+    if (std::abs(contact.nhat_W.dot(direction)) < kSideways &&
         contact.distance < meeting.sideways.distance) {
       meeting.sideways = contact;
       meeting.travelled = travelled;
@@ -180,32 +180,55 @@ std::optional<Extraction::WhatBends> Extraction::FindWhatBends(OccurrenceId id, 
   return least;
 }
 
-GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, const Meeting& meeting,
-                                       const Vec3& direction) {
+GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, const Vec3& direction) {
   constexpr int kSamples = 120;         // A choice: ramps of a hook have some tens of them.
   constexpr double kFinest = 10e-6;     // [m]; contact is no finer.
   constexpr double kLeastAcross = 0.3;  // Normals that lead on say nothing of how far it gives.
-  const Vec3& n_W = meeting.sideways.nhat_W;
-  const Vec3 across_W = direction.cross(n_W).normalized();
+  const auto calc_aside = [&direction](const contact::Contact& contact) {
+    return (contact.nhat_W - contact.nhat_W.dot(direction) * direction).norm();
+  };
+  const auto counts = [&](const contact::Contact& contact) {
+    return contact.body.is_valid() && OccurrenceId(contact.body.index()) == other &&
+           contact.distance < 0 && calc_aside(contact) > kLeastAcross;
+  };
+  // All of what overlaps, whatever is allowed or answered for by a mate.
+  contact::QueryOptions query;
+  query.margin = 0;
+  query.self = contact::BodyId(id.index());
+  const double step = CalcStep({id});
+  double until = 0;
   GivingSamples samples;
-  samples.spacing = std::max(kFinest, (meeting.until + CalcStep({id})) / kSamples);
+  contact::Contact& deepest = samples.deepest;
+  VisitContacts(
+      id, direction, query, step, static_cast<int>(CalcExitDistance({id}, direction) / step),
+      [&](const contact::Contact& contact, double travelled) {
+        if (counts(contact)) {
+          until = travelled;
+          samples.travelled = contact.distance < deepest.distance ? travelled : samples.travelled;
+          deepest = contact.distance < deepest.distance ? contact : deepest;
+        }
+      });
+  samples.spacing = std::max(kFinest, (until + step) / kSamples);
   samples.given.assign(kSamples + 1, 0.0);
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  VisitContacts(id, direction, samples.spacing, kSamples,
-                [&](const contact::Contact& contact, double travelled) {
-                  const Vec3& nhat_W = contact.nhat_W;
-                  const double aside = (nhat_W - nhat_W.dot(direction) * direction).norm();
-                  if (!contact.body.is_valid() || contact.distance >= 0 || aside < kLeastAcross ||
-                      OccurrenceId(contact.body.index()) != other) {
-                    return;
-                  }
-                  const auto i = static_cast<std::size_t>(std::lround(travelled / samples.spacing));
-                  samples.given[i] = std::max(samples.given[i], -contact.distance / aside);
-                  low = std::min(low, across_W.dot(contact.p_WC));
-                  high = std::max(high, across_W.dot(contact.p_WC));
-                });
-  samples.breadth = std::max(0.0, high - low);
+  // Two hooks grip from both sides, and a bead all around.
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const Vec3 across_W = direction.cross(deepest.nhat_W).normalized();
+  std::array<double, 2> low{kNone, kNone};
+  std::array<double, 2> high{-kNone, -kNone};
+  VisitContacts(
+      id, direction, query, samples.spacing, kSamples,
+      [&](const contact::Contact& contact, double travelled) {
+        if (!counts(contact)) {
+          return;
+        }
+        double& given =
+            samples.given[static_cast<std::size_t>(std::lround(travelled / samples.spacing))];
+        given = std::max(given, -contact.distance / calc_aside(contact));
+        const std::size_t side = contact.nhat_W.dot(deepest.nhat_W) > 0 ? 0 : 1;
+        low[side] = std::min(low[side], across_W.dot(contact.p_WC));
+        high[side] = std::max(high[side], across_W.dot(contact.p_WC));
+      });
+  samples.breadth = std::max(0.0, high[0] - low[0]) + std::max(0.0, high[1] - low[1]);
   return samples;
 }
 
@@ -231,10 +254,65 @@ double Extraction::CalcWidestGiven(OccurrenceId id, OccurrenceId other, const Ve
   return std::min(limit + room, kMostOfOutline * narrowest);
 }
 
+std::optional<Obstacle> Extraction::FindSqueezed(OccurrenceId id, const Vec3& direction) {
+  const product::FlexiblePart* flexible = FindFlexible(product_, id);
+  if (flexible == nullptr || flexible->kind != product::FlexibleKind::kORing) {
+    return std::nullopt;
+  }
+  const product::Part& ring = product_.part_of(id);
+  const double section = ring.box_B.size().minCoeff();
+  const Vec3 middle_B = ring.box_B.centre();
+  const std::vector<Member> members = ListMembers({id}, direction);
+  contact::QueryOptions query = MakeQuery(members[0], kDepthTolerance);
+  query.margin = section;  // What it is stretched over pushes it against what is around it.
+  query.allowances = {};
+  query.ignored = {};
+  const double step = CalcStep({id});
+  const int last = static_cast<int>(CalcExitDistance({id}, direction) / step);
+
+  // At each look along the way, how deep it is in what is inside of it, and in what is around it.
+  // Past the middle of its section the nearest way out leads on: what is deepest tells the side.
+  struct Side {
+    double depth{-std::numeric_limits<double>::infinity()};
+    bool is_inside{false};
+  };
+
+  for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
+    ++straight_looks_;
+    const spatial::Pose X_WB = CalcPoseAlong(id, i * step * direction);
+    input_.scene->Query(input_.scene->shape(query.self), X_WB, query, &workspace_);
+    std::map<OccurrenceId, Side> sides;
+    for (const contact::Contact& contact : workspace_.contacts()) {
+      const Vec3& n_W = contact.nhat_W;
+      const double aside = (n_W - n_W.dot(direction) * direction).norm();
+      if (contact.body.is_valid() && aside > kSideways) {
+        Side& side = sides[OccurrenceId(contact.body.index())];
+        const bool is_inside = n_W.dot(contact.p_WC - X_WB * middle_B) > 0;
+        side = -contact.distance / aside > side.depth ? Side{-contact.distance / aside, is_inside}
+                                                      : side;
+      }
+    }
+    double inside = 0;
+    for (const auto& [other, side] : sides) {
+      inside = side.is_inside ? std::max(inside, side.depth) : inside;
+    }
+    for (const auto& [other, side] : sides) {
+      if (inside > 0 && !side.is_inside && inside + side.depth > kMostSqueeze * section) {
+        return Obstacle{other, i * step, {}};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& direction) {
   const Giving giving = std::exchange(giving_, Giving::kNone);  // What is met without giving.
   const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
+  const std::optional<Obstacle> squeezed = FindSqueezed(id, direction);
   giving_ = giving;
+  if (squeezed) {
+    return squeezed;
+  }
   for (const auto& [other, meeting] : meetings) {
     const double limit = CalcGiveLimit(id, other);
     if (!(limit > 0)) {
@@ -254,10 +332,6 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
 void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
   SetUnit({id}, true);
   const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
-  std::map<OccurrenceId, GivingSamples> samples;
-  for (const auto& [other, meeting] : meetings) {
-    samples[other] = SampleGiving(id, other, meeting, direction);
-  }
   SetUnit({id}, false);
   for (const auto& [other, meeting] : meetings) {
     GivingPair give;
@@ -281,9 +355,14 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
       std::swap(give.flexible, give.other);
     }
     give.moved = id;
-    give.curve =
-        MakeGivingCurve(product_, give, samples[other],
-                        bending && bending->part == give.flexible ? &bending->bending : nullptr);
+    const GivingSamples samples = SampleGiving(id, other, direction);
+    // The nearest way out of a small hook leads along its way: its ramp tells where its arm is.
+    Meeting on_ramp = meeting;
+    on_ramp.sideways = samples.deepest;
+    on_ramp.travelled = samples.travelled;
+    const auto arm = bending ? bending : FindWhatBends(id, other, on_ramp, direction, give.width);
+    give.curve = MakeGivingCurve(product_, give, samples,
+                                 arm && arm->part == give.flexible ? &arm->bending : nullptr);
     gives_.push_back(give);
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
     allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);

@@ -15,6 +15,8 @@ struct GivingSamples {
   double spacing{1};          ///< [m]
   std::vector<double> given;  ///< Overlap at each sample, from the part's place outwards, >= 0 [m].
   double breadth{0};          ///< How broad they overlap, across way and deflection [m].
+  contact::Contact deepest{};  ///< Its distance is 0 where they do not overlap.
+  double travelled{0};         ///< Where on the way that is [m].
 };
 
 /** The forces of a pair along the way of the part that is moved; null where no formula is known for

@@ -298,14 +298,12 @@ TEST(OverlapTest, PressFitIsNoAllowance) {
 constexpr double kGroove = 4.5e-3;  // Radius of the groove, and of the ring's hole.
 constexpr double kLand = 5e-3;      // Radius of the shaft beside the groove.
 
-/** A shaft with a groove between its end and a flange, and a ring in the groove. */
-Product RingInGroove(double limit) {
+/** Adds a shaft with a groove between its end and a flange. */
+product::PartId AddGroovedShaft(Product* product) {
   using contact::testing::CylinderZ;
   using contact::testing::PlaneAt;
-  Product product;
-  product.name = "axle";
-  const auto shaft = testing::AddPart(
-      &product, "shaft",
+  return testing::AddPart(
+      product, "shaft",
       contact::testing::Lathe({{{{0, 0}, {10e-3, 0}}, PlaneAt(0, -1)},
                                {{{10e-3, 0}, {10e-3, 8e-3}}, CylinderZ(10e-3, 1)},
                                {{{10e-3, 8e-3}, {kLand, 8e-3}}, PlaneAt(8e-3, 1)},
@@ -316,6 +314,13 @@ Product RingInGroove(double limit) {
                                {{{kLand, 13.2e-3}, {kLand, 16e-3}}, CylinderZ(kLand, 1)},
                                {{{kLand, 16e-3}, {0, 16e-3}}, PlaneAt(16e-3, 1)}},
                               64));
+}
+
+/** The shaft, and a ring in its groove. */
+Product RingInGroove(double limit) {
+  Product product;
+  product.name = "axle";
+  const auto shaft = AddGroovedShaft(&product);
   const auto ring =
       testing::AddPart(&product, "ring", contact::testing::Bushing(kGroove, 7e-3, 1e-3, 20e-6));
   testing::Place(&product, shaft, "shaft");
@@ -360,6 +365,43 @@ TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {
     ASSERT_EQ(model->sequence.gaps.size(), 1U) << limit;
     EXPECT_EQ(model->sequence.gaps[0].occurrence, OccurrenceId(1));
     EXPECT_TRUE(model->sequence.gives.empty());
+  }
+}
+
+/** The order in which the parts go in. */
+std::vector<OccurrenceId> OrderOf(const Model& model) {
+  std::vector<OccurrenceId> order;
+  for (const SequenceStep& step : model.sequence.steps) {
+    order.push_back(step.occurrence);
+  }
+  return order;
+}
+
+// Stretched over the land, the O-ring gives 0.5 mm of its section of 0.8 mm; drawn in between land
+// and sleeve it would have to get flatter by as much and more.
+TEST(GiveTest, AnORingIsPutOnBeforeTheSleeveThatSqueezesIt) {
+  Product product;
+  product.name = "seal";
+  constexpr double kOuter = kGroove + 0.8e-3;
+  const auto shaft = AddGroovedShaft(&product);
+  const auto seal = testing::AddPart(&product, "o-ring",
+                                     contact::testing::Bushing(kGroove, kOuter, 0.8e-3, 20e-6));
+  testing::Place(&product, shaft, "shaft");
+  testing::Place(&product, seal, "o-ring", Pose(Vec3(0, 0, 12.2e-3)));
+  const auto sleeve = testing::AddPart(
+      &product, "sleeve", contact::testing::Bushing(kOuter - 0.1e-3, 9e-3, 10e-3, 20e-6));
+  testing::Place(&product, sleeve, "sleeve", Pose(Vec3(0, 0, 8e-3)));
+  testing::Complete(&product);
+  product.flexible.push_back({OccurrenceId(1), product::FlexibleKind::kORing, 0.8e-3, "a test"});
+  const auto model = CompileProduct(std::move(product));
+  EXPECT_TRUE(model->sequence.gaps.empty());
+  EXPECT_EQ(OrderOf(*model), (std::vector{OccurrenceId(0), OccurrenceId(1), OccurrenceId(2)}));
+  ASSERT_EQ(model->sequence.gives.size(), 2U);
+  for (const GivingPair& give : model->sequence.gives) {
+    EXPECT_EQ(give.flexible, OccurrenceId(1));
+    ASSERT_TRUE(give.curve != nullptr);
+    // It is stretched over the land, and squeezed by the sleeve.
+    EXPECT_EQ(give.curve->squeezed.has_value(), give.moved == OccurrenceId(2));
   }
 }
 
