@@ -31,11 +31,12 @@ GivingCurve MakeHook(double friction) {
   curve.spacing = 10e-6;
   constexpr double kLand = 1e-3;
   const double top = kUndercut + kLand;
-  for (double travel = 0;; travel += curve.spacing) {
+  for (int i = 0;; ++i) {
+    const double travel = i * curve.spacing;
     const double back = std::min(kUndercut, travel);
     const double front = kUndercut - kSlope * (travel - top);
     const double given = std::min(back, front);
-    if (given <= 0 && travel > 0) {
+    if (given <= 0 && i > 0) {
       return curve;
     }
     curve.given.push_back(std::max(0.0, given));
