@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <iostream>
 #include <optional>
 #include <vector>
@@ -33,9 +34,7 @@ double MedianOf(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Run(int argc, char** argv) {
   CLI::App app{"Planning of ways: puzzles of OMPL.app and nuts of Factory, ours and a peer"};
   std::string folder;
   std::vector<std::string> names;
@@ -72,7 +71,7 @@ int main(int argc, char** argv) {
         name.rfind("pair:", 0) == 0 ? bench::LoadPair(name.substr(5), has_surfaces, spacing)
         : is_nut || is_free_nut
             ? bench::LoadNut(folder + "/factory", name.substr(name.find(':') + 1), is_nut, spacing)
-            : bench::LoadPuzzle(folder + "/ompl/" + name + ".cfg", spacing);
+            : bench::LoadPuzzle(fmt::format("{}/ompl/{}.cfg", folder, name), spacing);
     if (!puzzle) {
       std::cerr << puzzle.error().ToString() << "\n";
       return 1;
@@ -162,4 +161,15 @@ int main(int argc, char** argv) {
     }
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "plan_bench: " << error.what() << "\n";
+    return 1;
+  }
 }
