@@ -11,7 +11,7 @@ namespace {
 // Bayer, Snap-Fit Joints for Plastics, table 1: a rectangular section, and one that tapers to half.
 constexpr double kConstantSection = 0.67;
 constexpr double kTaperedSection = 1.09;
-// Share of the section up to which Lindley compared his formula with rubber.
+// Share of the section up to which the formula is used; glands squeeze by 10 to 30 %. A choice.
 constexpr double kMostSqueeze = 0.5;
 
 double ShapeOf(const SnapArm& arm) {

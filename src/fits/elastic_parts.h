@@ -48,8 +48,8 @@ struct ORing {
 
 /** Radial force on the whole ring that is stretched over a shaft, for each metre by which its
  radius grows [N/m]: 2 pi E A / r, A = pi d^2 / 4, r = D / 2; its hoop tension is E A y / r. Exact
- for small strains; rubber's secant modulus falls by about a third up to 20 %, which is not
- accounted for. */
+ for small strains. Rubber softens where it is stretched further, which is not accounted
+ for. */
 [[nodiscard]] double CalcStretchStiffness(const ORing& ring);
 
 /** An open ring of rectangular section that is spread, or closed, by uniform pressure. */

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "fits/elastic_parts.h"
 #include "product/mesh_ray.h"
 #include "spatial/pose.h"
 
 namespace hvas::simulation {
 namespace {
 
-constexpr double kShape = 0.67;             // Bayer: a rectangular arm of constant section.
 constexpr double kMostThickness = 1.0 / 3;  // Of the length; beams are slender: a choice.
 
 double CalcExtentAlong(const product::Part& part, const Vec3& way_B) {
@@ -43,7 +43,8 @@ std::optional<Bending> FindBending(const product::Product& product, product::Occ
   if (thickness > kMostThickness * length) {
     return std::nullopt;
   }
-  return Bending{deflection * thickness / (kShape * length * length), length, thickness,
+  const fits::SnapArm arm{length, 0, thickness, 0};
+  return Bending{deflection / fits::CalcArmDeflection(arm, 1), length, thickness,
                  p_W + inner->distance * inward_W};
 }
 

@@ -14,9 +14,8 @@ namespace {
 using product::FlexibleKind;
 using product::Part;
 
-// Moduli of parts whose file names no material [Pa]. ABS and polyamide that has taken up water have
-// about 2 GPa (Bayer, Snap-Fit Joints for Plastics); spring steel 206 GPa; nitrile
-// rubber of 70 Shore A about 5 MPa, as in the example of Green and English (1994).
+// Moduli of parts whose file names no material [Pa]: ABS, spring steel, and the rubber of the
+// example of Green and English (1994). Usual values, and choices.
 constexpr double kPlasticModulus = 2e9;
 constexpr double kSpringSteelModulus = 206e9;
 constexpr double kRubberModulus = 5e6;
@@ -24,7 +23,7 @@ constexpr double kStiffestRubber = 0.1e9;  // No rubber is stiffer: the name mea
 constexpr double kSoftestMetal = 10e9;
 // Faces that are drawn steeper than 60 degrees have an edge that is not: a choice.
 const double kSteepest = std::tan(std::numbers::pi / 3);
-// An open ring has this share of its circumference: DIN 471 draws gaps of some 30 degrees.
+// An open ring has this share of its circumference, for a gap of some 30 degrees. A choice.
 constexpr double kShareOfRing = 0.9;
 
 double PlasticModulusOf(const Part& part) {
