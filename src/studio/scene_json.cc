@@ -82,6 +82,10 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
     const product::Part& part = model.product->part_of(occurrence.id);
     const simulation::Body& body = model.bodies[occurrence.id.index()];
     const bool is_base = IsBase(model.sequence, occurrence.id);
+    // The base stands in its place from the beginning, also before the first tick of the run has
+    // put it there.
+    const simulation::Placement placement =
+        is_base ? simulation::Placement::kPlaced : state.parts[occurrence.id.index()].placement;
     all.push_back(
         {{"id", occurrence.id.value()},
          {"name", occurrence.name},
@@ -89,7 +93,7 @@ Json OccurrencesOf(const Model& model, const LiveState& state) {
          {"parent", occurrence.parent.value()},
          {"part", occurrence.part.value()},
          {"color", HexOf(part.color)},
-         {"placement", ToString(state.parts[occurrence.id.index()].placement)},
+         {"placement", ToString(placement)},
          {"start", ToJson(body.X_WB_start)},
          {"goal", ToJson(body.X_WB_goal)},
          {"mass_kg", body.mass.mass},

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { distance, type Pose, type Vec3 } from "../src/model/math";
+import { distance, lerp, toVec3, type Pose, type Vec3 } from "../src/model/math";
 import type { HandState } from "../src/protocol/frames";
 import { MouseHand, type Eye } from "../src/view3d/mouse_hand";
 
@@ -22,9 +22,12 @@ function take(): MouseHand {
   return hand;
 }
 
-/** What the server would say if the part followed the hand at once. */
-function follow(p: readonly number[]): HandState {
-  return { state: 1, occurrence: 4, p_WD_m: p, q_WD: [1, 0, 0, 0], axis_W: [0, 0, 0] } as unknown as HandState;
+/** What the server would say if the part followed the hand at once. `p_HB`: where the hand has it. */
+function follow(p: readonly number[], p_HB: Vec3 = [0, 0, 0]): HandState {
+  const q = [1, 0, 0, 0];
+  const part = p.map((value, k) => value + p_HB[k]!);
+  const poses = { p_WH_m: p, q_WH: q, p_WT_m: part, q_WT: q, p_WD_m: part, q_WD: q };
+  return { state: 1, occurrence: 4, ...poses, axis_W: [0, 0, 0] } as unknown as HandState;
 }
 
 function run(hand: MouseHand, seconds: number): Vec3 {
@@ -84,6 +87,45 @@ describe("the mouse hand", () => {
       }
     }
     expect(lowest).toBeGreaterThan(0.085);
+  });
+
+  it.each([0, 0.1, 0.2, 0.4, 0.8])("goes in at one go where its part is seen %f s late", (delay) => {
+    for (const [period, lag] of [[1 / 60, 0.01], [1 / 60, 0.15], [1 / 60, 0.4], [0.1, 0.05], [0.1, 0.4]] as const) {
+      const hand = take();
+      hand.grab(eye.rayTo(start.p), eye);
+      hand.drag(eye.rayTo([0, 0, 0.04]), eye, false);
+      let p: Vec3 = start.p;
+      const seen: Vec3[] = [start.p];
+      let outwards = 0;
+      let wasOutwards = false;
+      for (let k = 0; k < 20 / period; k++) {
+        const late = seen[Math.max(0, seen.length - 1 - Math.round(delay / period))]!;
+        const next = hand.update(period, { ...follow(late), contact_count: 0 }, eye)?.p_WH_m ?? p;
+        const rise = next[2]! - p[2];
+        if (Math.abs(rise) > 1e-7) {
+          outwards += rise > 0 && !wasOutwards ? 1 : 0;
+          wasOutwards = rise > 0;
+        }
+        p = toVec3(next);
+        seen.push(lerp(seen.at(-1)!, p, 1 - Math.exp(-period / lag)));
+      }
+      expect(outwards).toBe(1);
+      expect(distance(p, [0, 0, 0.04])).toBeLessThan(1e-3);
+    }
+  });
+
+  it("brings in a part that rolled before the hand closed on it", () => {
+    const hand = take();
+    hand.grab(eye.rayTo(start.p), eye);
+    hand.drag(eye.rayTo([0, 0, 0.04]), eye, false);
+    const p_HB: Vec3 = [0.006, -0.004, 0.001];
+    let p: readonly number[] = start.p;
+    for (let k = 0; k < 300; k++) {
+      p = hand.update(kPeriod, { ...follow(p, p_HB), contact_count: 0 }, eye)?.p_WH_m ?? p;
+    }
+    expect(hand.isCaught).toBe(true);
+    expect(Math.hypot(p[0]! + p_HB[0], p[1]! + p_HB[1])).toBeLessThan(1e-4);
+    expect(p[2]).toBeCloseTo(0.04, 3);
   });
 
   it("goes on when nothing is heard for a moment", () => {

@@ -84,7 +84,8 @@ function screen(occurrence: number): Seen | null {
       const angle = (k * Math.PI) / 8;
       const probe = { x: at.x + share * reach * Math.cos(angle), y: at.y + share * reach * Math.sin(angle) };
       const seen = toClient(probe);
-      if (isOnPicture(seen) && port.product.pick(port.rayAt(probe.x, probe.y))?.occurrence === occurrence) {
+      const isFree = isOnPicture(seen) && port.pickCube(probe.x, probe.y) === null;
+      if (isFree && port.product.pick(port.rayAt(probe.x, probe.y))?.occurrence === occurrence) {
         return { ...seen, isVisible: true };
       }
     }

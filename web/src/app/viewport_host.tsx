@@ -1,6 +1,7 @@
 /** The picture. There is one of it on a page, whichever view shows it. */
 
 import { useEffect, useRef } from "preact/hooks";
+import { kNoRim, rimOf, type Rim } from "../model/framing";
 import { Viewport } from "../view3d/viewport";
 import { paths, studio, ui, view, viewport } from "./app_state";
 import { language, t } from "./i18n";
@@ -14,8 +15,23 @@ const element = (() => {
   };
 })();
 
+/** What floats over the picture and stays there. */
+const kPanels = ".tool-rail, .hint-bar, .model-panel, .inspector";
+
+function coveredRim(): Rim {
+  const workspace = element().closest(".workspace");
+  const isHalved = view.stereo.peek() === "side";  // each eye has a half of the picture, and panels cover it as a whole
+  if (workspace === null || isHalved) {
+    return kNoRim;
+  }
+  const picture = element().getBoundingClientRect();
+  const panels = [...workspace.querySelectorAll(kPanels)].map((panel) => panel.getBoundingClientRect());
+  return rimOf(picture, panels.filter(({ width, height }) => width > 0 && height > 0));
+}
+
 function makeViewport(): Viewport {
   const made = new Viewport(element(), studio, view);
+  made.rig.rim = coveredRim;
   made.canvas.tabIndex = 0;
   made.canvas.setAttribute("role", "application");
   made.pointer.onContextMenu = (x, y, hit) => {

@@ -86,3 +86,28 @@ export function leash(from: Vec3, to: Vec3, longest: number): Vec3 {
   const d = distance(from, to);
   return d > longest ? lerp(from, to, longest / d) : to;
 }
+
+/** How far a point is from the line [m]. */
+export function offLine(p: Vec3, line: Line): number {
+  const r = sub(p, line.p);
+  return norm(sub(r, scale(line.d, dot(r, line.d))));
+}
+
+/** How far off the way in the hand is in line with it still [m]. */
+export function inLine(line: Line): number {
+  return 0.03 * Math.max(1e-6, line.high) + 5e-4;
+}
+
+/** From this share of the way in outwards the hand may cross over to it. */
+const kOutside = 0.96;
+
+/** To where the way in begins: out beside it and across, never through what stands around it. */
+export function approach(from: Vec3, line: Line): Vec3 {
+  const s = dot(sub(from, line.p), line.d);
+  const outer = add(line.p, scale(line.d, line.high));
+  if (s > kOutside * line.high) {
+    return outer;
+  }
+  const beside = sub(from, add(line.p, scale(line.d, s)));
+  return add(outer, beside);
+}

@@ -14,7 +14,9 @@ import {
   Vector3,
   Vector4,
 } from "three";
+import { frame, kNoRim, type Frame, type Rim } from "../model/framing";
 import type { Vec3 } from "../model/math";
+import { boxOf } from "./goals";
 
 CameraControls.install({
   THREE: { Vector2, Vector3, Vector4, Quaternion, Matrix4, Spherical, Box3, Sphere, Raycaster },
@@ -39,13 +41,15 @@ const kDirections: Record<ViewName, Vec3> = {
 const kFieldOfView = 32;
 /** What stands around a small product is to be seen as well [m]. */
 const kFarWall = 15;
-/** Room around what is shown: panels float over the rim of the picture. */
-const kAround = 1.16;
+/** How many times as large as what is shown the free part of the picture is: a choice. */
+const kRoom = 1.08;
 
 export class CameraRig {
   readonly perspective = new PerspectiveCamera(kFieldOfView, 1, 0.001, 100);
   readonly parallel = new OrthographicCamera(-1, 1, 1, -1, -10, 100);
   readonly controls: CameraControls;
+  /** What panels cover of the picture. */
+  rim: () => Rim = () => kNoRim;
   private aspect = 1;
   private beginning: EyePose | null = null;
 
@@ -122,7 +126,7 @@ export class CameraRig {
     void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, false);
   }
 
-  /** Looks from a direction so that all the points are in the picture. */
+  /** Looks from a direction so that all the points are in the picture, and no panel covers them. */
   lookFrom(direction: Vec3, points: readonly Vector3[], isSmooth = true): void {
     const back = new Vector3(...direction).normalize();
     if (Math.abs(back.z) > 0.999) {
@@ -130,12 +134,23 @@ export class CameraRig {
       back.y -= 1e-4 * Math.sign(back.z);
       back.normalize();
     }
-    const target = new Box3().setFromPoints([...points]).getCenter(new Vector3());
-    const seen = this.measure(points, target, back);
-    const eye = target.clone().addScaledVector(back, seen.distance);
+    if (points.length === 0) {
+      return;
+    }
+    const middle = boxOf(points).getCenter(new Vector3());
+    const right = new Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const framed = (slope: number | null): Frame => {
+      const screen = { right: right.toArray(), up: up.toArray(), back: back.toArray(), aspect: this.aspect, rim: this.rim(), room: kRoom };
+      return frame(points.map((p) => p.toArray()), middle.toArray(), screen, slope);
+    };
+    const seen = framed(Math.tan((kFieldOfView * Math.PI) / 360));
+    const shown = this.isParallel ? framed(null) : seen;
+    const target = middle.clone().addScaledVector(right, shown.aside).addScaledVector(up, shown.above);
+    const eye = target.clone().addScaledVector(back, seen.size);
     void this.controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, isSmooth);
     if (this.isParallel) {
-      this.setHalfHeight(seen.halfHeight);
+      this.setHalfHeight(shown.size);
       void this.controls.zoomTo(1, isSmooth);
     }
   }
@@ -196,23 +211,6 @@ export class CameraRig {
       return (this.parallel.top - this.parallel.bottom) / this.parallel.zoom / height;
     }
     return (2 * Math.tan((kFieldOfView * Math.PI) / 360) * depth) / height;
-  }
-
-  /** How far away, and how high, a picture of the points has to be. */
-  private measure(points: readonly Vector3[], target: Vector3, back: Vector3): { distance: number; halfHeight: number } {
-    const right = new Vector3(0, 0, 1).cross(back).normalize();
-    const up = back.clone().cross(right);
-    const slope = Math.tan((kFieldOfView * Math.PI) / 360);
-    let distance = 0;
-    let halfHeight = 0;
-    const offset = new Vector3();
-    for (const point of points) {
-      offset.copy(point).sub(target);
-      const half = Math.max(Math.abs(offset.dot(up)), Math.abs(offset.dot(right)) / this.aspect) * kAround;
-      halfHeight = Math.max(halfHeight, half);
-      distance = Math.max(distance, half / slope + offset.dot(back));
-    }
-    return { distance: Math.max(distance, 1e-3), halfHeight: Math.max(halfHeight, 1e-3) };
   }
 
   private setHalfHeight(half: number): void {

@@ -1,6 +1,6 @@
 /** Where parts belong: as boxes to reckon with, and as ghosts to be seen. */
 
-import { Matrix4, Vector3 } from "three";
+import { Box3, Matrix4, Vector3 } from "three";
 import type { Box } from "../model/explode";
 import type { Scene } from "../protocol/messages";
 import type { GhostPart } from "./feel_layer";
@@ -34,4 +34,8 @@ export function ghostsOf(occurrence: number, held: readonly number[], scene: Sce
   });
   const own = parts.shapeOf(occurrence);
   return { goal, tracked: own === null ? [] : [{ shape: own, pose: { p: [0, 0, 0], q: [1, 0, 0, 0] } }] };
+}
+
+export function boxOf(points: readonly Vector3[]): Box3 {
+  return new Box3().setFromPoints([...points]);
 }

@@ -2,7 +2,7 @@
 
 import { pointAtLine, wayInLine, type Line, type Ray } from "../model/assist";
 import { compose, inverse, type Pose, type Vec3 } from "../model/math";
-import type { TablePlace } from "../protocol/messages";
+import type { Step, TablePlace } from "../protocol/messages";
 
 /** A place on the table is meant when its way in is seen this near to the pointer [px]. */
 const kTablePx = 90;
@@ -19,6 +19,28 @@ interface Sight {
 export interface Place {
   goal: Pose;
   way: Line | null;
+}
+
+export interface TakenPart {
+  occurrence: number;
+  /** As it lay when it was taken. */
+  X_WB: Pose;
+  goal: Pose;
+  step: Step | null;
+  radius: number;
+  /** How far out along the way in the part is clear of all that stands there [m]. */
+  clearance: number;
+  /** What moves with it. */
+  members: readonly number[];
+  /** Its places at loose parts on the table. */
+  tablePlaces: readonly TablePlace[];
+}
+
+/** The one in the product first. */
+export function placesOf(part: TakenPart, X_HB: Pose): [Place, ...Place[]] {
+  const goal = compose(part.goal, inverse(X_HB));
+  const way = part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null;
+  return [{ goal, way }, ...part.tablePlaces.map((place) => placeOnTable(place, X_HB, part.radius))];
 }
 
 /** @param radius  Of the part [m]. */

@@ -27,6 +27,18 @@ export class Lifetime {
     this.onEnd(() => target.removeEventListener(type, heard, options));
   }
 
+  /** Runs at first, and as often as the size of the element changes. */
+  followSize(element: Element, run: () => void): void {
+    const observer = new ResizeObserver(run);
+    observer.observe(element);
+    this.onEnd(() => observer.disconnect());
+  }
+
+  repeat(periodMs: number, run: () => void): void {
+    const timer = setInterval(run, periodMs);
+    this.onEnd(() => clearInterval(timer));
+  }
+
   end(): void {
     this.hasEnded = true;
     for (const end of this.ends.splice(0).reverse()) {

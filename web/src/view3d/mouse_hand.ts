@@ -3,15 +3,26 @@
  * that one may look from elsewhere and take hold again on the way.
  */
 
-import { ease, easeTurn, leash, pointAtLine, rayOnPlane, wayInLine, type Line, type Ray } from "../model/assist";
+import {
+  approach,
+  ease,
+  easeTurn,
+  inLine,
+  leash,
+  offLine,
+  pointAtLine,
+  rayOnPlane,
+  type Line,
+  type Ray,
+} from "../model/assist";
 import {
   add,
+  angleBetween,
   compose,
   distance,
   dot,
   inverse,
   multiply,
-  norm,
   normalized,
   scale,
   sub,
@@ -23,8 +34,7 @@ import {
   type Vec3,
 } from "../model/math";
 import type { HandInput, HandState } from "../protocol/frames";
-import type { Step, TablePlace } from "../protocol/messages";
-import { nearestPlace, placeOnTable, type Place } from "./hand_places";
+import { nearestPlace, placesOf, type Place, type TakenPart } from "./hand_places";
 
 const kFine = 0.2;
 /** The way in catches the hand when it is seen this near to it [px]. */
@@ -34,10 +44,13 @@ const kHoldOnPx = 60;
 const kFastest = 0.4;
 const kSlowest = 0.12;
 const kCaptured = 3;
+/** Grips are the same within this: poses of the server come in single precision [m, rad]. */
+const kSameGrip = 1e-5;
+const kSameGripAngle = 1e-4;
 /** A free part may be further behind: what is known of it is some time old [m]. */
 const kFreeLeash = 0.08;
-/** From this share of the way in outwards the hand may cross over to it. */
-const kOutside = 0.96;
+/** What is in line with the way in may be this much further off before it has to come out again: it is known with delay. */
+const kStillInLine = 3;
 
 /** What the view knows of the eye. */
 export interface Eye {
@@ -49,26 +62,11 @@ export interface Eye {
   metresPerPixel(p: Vec3): number;
 }
 
-export interface TakenPart {
-  occurrence: number;
-  /** As it lay when it was taken. */
-  X_WB: Pose;
-  goal: Pose;
-  step: Step | null;
-  radius: number;
-  /** How far out along the way in the part is clear of all that stands there [m]. */
-  clearance: number;
-  /** What moves with it. */
-  members: readonly number[];
-  /** Its places at loose parts on the table. */
-  tablePlaces: readonly TablePlace[];
-}
-
 interface Hold {
   part: TakenPart;
   X_HB: Pose;
   /** The one in the product first. */
-  places: readonly Place[];
+  places: readonly [Place, ...Place[]];
   /** The one that the pointer is nearest to. */
   goal: Pose;
   way: Line | null;
@@ -78,6 +76,8 @@ interface Hold {
   sent: Pose;
   start: Vec3;
   isCaught: boolean;
+  /** The hand is on the way in, for the server as well, and may go along it. */
+  isInLine: boolean;
   isTurnedByUser: boolean;
   wasSeen: boolean;
 }
@@ -110,18 +110,17 @@ export class MouseHand {
 
   begin(part: TakenPart, hand: Pose): void {
     const X_HB = compose(inverse(hand), part.X_WB);
-    const goal = compose(part.goal, inverse(X_HB));
-    const inProduct = { goal, way: part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null };
-    const onTable = part.tablePlaces.map((place) => placeOnTable(place, X_HB, part.radius));
+    const places = placesOf(part, X_HB);
     this.hold = {
       part,
       X_HB,
-      places: [inProduct, ...onTable],
-      ...(onTable.find((_, k) => part.tablePlaces[k]!.is_there) ?? inProduct),
+      places,
+      ...(places.slice(1).find((_, k) => part.tablePlaces[k]!.is_there) ?? places[0]),
       free: hand,
       sent: hand,
       start: hand.p,
       isCaught: false,
+      isInLine: false,
       isTurnedByUser: false,
       wasSeen: false,
     };
@@ -201,18 +200,20 @@ export class MouseHand {
       return null;
     }
     hold.wasSeen ||= isOurs;
+    if (isOurs) {
+      holdAsGripped(hold, live);
+    }
     if (!isOurs || live.state < kCaptured) {
       goToPlace(hold, nearestPlace(hold.places, hold.free.p, eye));
     }
     this.turnTowardsGoal(hold, seconds);
-    const wanted = this.wantedPlace(hold, live, eye);
+    const wanted = this.wantedPlace(hold, live, isOurs ? toVec3(live.p_WH_m) : hold.sent.p, eye);
     // Quick over the table, careful where it matters.
     const fastest = Math.min(kFastest, Math.max(kSlowest, 2.5 * distance(hold.sent.p, hold.goal.p)));
     let p = ease(hold.sent.p, wanted, seconds, 0.06, fastest);
     if (isOurs) {
       const displayed = compose({ p: toVec3(live.p_WD_m), q: toQuat(live.q_WD) }, inverse(hold.X_HB)).p;
-      const isBlocked = live.contact_count > 0 || live.state >= kCaptured;
-      p = leash(displayed, p, isBlocked ? Math.max(0.015, 0.35 * hold.part.radius) : kFreeLeash);
+      p = isBlocked(live) ? leash(displayed, p, Math.max(0.015, 0.35 * hold.part.radius)) : waitFor(displayed, hold.sent.p, p);
     }
     hold.sent = { p, q: easeTurn(hold.sent.q, hold.free.q, seconds, 0.06) };
     return {
@@ -238,19 +239,24 @@ export class MouseHand {
     }
   }
 
-  private wantedPlace(hold: Hold, live: HandState | null, eye: Eye): Vec3 {
+  /** @param heard  Where the server has the hand, some time ago. */
+  private wantedPlace(hold: Hold, live: HandState | null, heard: Vec3, eye: Eye): Vec3 {
     const line = this.assists ? this.guide(hold, live) : null;
     if (line === null) {
       hold.isCaught = false;
+      hold.isInLine = false;
       return hold.free.p;
     }
     const snap = pointAtLine(eye.rayTo(hold.free.p), line);
     const reach = (hold.isCaught ? kHoldOnPx : kCatchPx) * eye.metresPerPixel(snap.p);
     hold.isCaught = snap.off < reach;
     if (!hold.isCaught) {
+      hold.isInLine = false;
       return hold.free.p;
     }
-    return approach(hold.sent.p, snap.p, line);
+    const far = Math.max(offLine(hold.sent.p, line), offLine(heard, line));
+    hold.isInLine = far < (hold.isInLine ? kStillInLine : 1) * inLine(line);
+    return hold.isInLine ? snap.p : approach(hold.sent.p, line);
   }
 
   /** The axis that a captured mate has, or else the way in. */
@@ -268,33 +274,36 @@ export class MouseHand {
   }
 }
 
+/** The hand closes on its part where that is by then: a part that rolls is elsewhere than when it was pressed on. */
+function holdAsGripped(hold: Hold, live: HandState): void {
+  const X_WH = { p: toVec3(live.p_WH_m), q: toQuat(live.q_WH) };
+  const X_HB = compose(inverse(X_WH), { p: toVec3(live.p_WT_m), q: toQuat(live.q_WT) });
+  if (distance(X_HB.p, hold.X_HB.p) < kSameGrip && angleBetween(X_HB.q, hold.X_HB.q) < kSameGripAngle) {
+    return;
+  }
+  const at = hold.places.findIndex(({ way }) => way === hold.way);
+  hold.X_HB = X_HB;
+  hold.places = placesOf(hold.part, X_HB);
+  Object.assign(hold, hold.places[at] ?? hold.places[0]);
+}
+
 /** Until a mate has caught the part, it is for the place that the pointer is nearest to. */
 function goToPlace(hold: Hold, place: Place): void {
   if (place.way !== hold.way) {
     hold.goal = place.goal;
     hold.way = place.way;
     hold.isCaught = false;
+    hold.isInLine = false;
   }
 }
 
-function offLine(p: Vec3, line: Line): number {
-  const r = sub(p, line.p);
-  return norm(sub(r, scale(line.d, dot(r, line.d))));
+/** Something else than the hand leads the part as well. */
+function isBlocked(live: HandState): boolean {
+  return live.contact_count > 0 || live.state >= kCaptured;
 }
 
-/** Towards a point of the way in, but first out beside it and across to where it begins: never through
- what stands around it. */
-function approach(from: Vec3, to: Vec3, line: Line): Vec3 {
-  const far = offLine(from, line);
-  const length = Math.max(1e-6, line.high);
-  if (far < 0.03 * length + 5e-4) {
-    return to;
-  }
-  const s = dot(sub(from, line.p), line.d);
-  const outer = add(line.p, scale(line.d, line.high));
-  if (s > kOutside * line.high) {
-    return outer;
-  }
-  const beside = sub(from, add(line.p, scale(line.d, s)));
-  return add(outer, beside);
+/** A free part that is seen too far behind is waited for: led back to it, the hand would go to and fro,
+ as what is seen is some time old. */
+function waitFor(displayed: Vec3, at: Vec3, to: Vec3): Vec3 {
+  return distance(displayed, to) > Math.max(kFreeLeash, distance(displayed, at)) ? at : to;
 }

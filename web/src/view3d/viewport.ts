@@ -1,6 +1,6 @@
 /** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
 
-import { Box3, Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
+import { Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
 import type { Vec3 } from "../model/math";
 import type { PartPaths } from "../model/part_path";
 import type { Studio } from "../model/studio";
@@ -11,6 +11,7 @@ import { CameraRig, type ViewName } from "./camera_rig";
 import { makeEye } from "./eye";
 import { firstDirection } from "./first_direction";
 import { FrameMeter } from "./frame_meter";
+import { boxOf } from "./goals";
 import { HandControl } from "./hand_control";
 import { Lifetime } from "./lifetime";
 import type { Loaded } from "./loaded_as";
@@ -93,14 +94,11 @@ export class Viewport {
     this.hand = new HandControl(studio, this.product, view);
     this.pointer = new PointerInput(this, studio);
     this.product.onLoaded = (loaded) => this.onLoaded(loaded);
-    const observer = new ResizeObserver(() => this.resize());
-    observer.observe(host);
-    this.life.onEnd(() => observer.disconnect());
+    this.life.followSize(host, () => this.resize());
     this.followState();
     this.resize();
     this.renderer.setAnimationLoop((now) => this.tick(now));
-    const timer = setInterval(() => this.moveHand(performance.now()), kHandMs);
-    this.life.onEnd(() => clearInterval(timer));
+    this.life.repeat(kHandMs, () => this.moveHand(performance.now()));
   }
 
   /** Ends the picture: nothing of it is drawn, listened to or kept on the graphics card any more. */
@@ -180,10 +178,10 @@ export class Viewport {
     this.invalidate();
   }
 
-  /** As the product is seen at first. */
+  /** As the product is seen at first, and until its user moves the eye. */
   lookAnew(): void {
     if (this.product.scene !== null) {
-      this.rig.lookFrom(firstDirection(this.product.scene), this.product.firstOutline(), false);
+      this.rig.begin(firstDirection(this.product.scene), this.product.firstOutline());
       this.invalidate();
     }
   }
@@ -241,17 +239,16 @@ export class Viewport {
 
   private onLoaded(loaded: Loaded): void {
     const scene = this.product.scene!;
-    const around = new Box3().setFromPoints(this.product.outline()).getBoundingSphere(new Sphere());
+    const around = boxOf(this.product.outline()).getBoundingSphere(new Sphere());
     const fixed = scene.occurrences.filter((o) => o.is_base).map((o) => o.id);
-    const base = new Box3().setFromPoints(this.product.outline(fixed));
-    this.stage.fit(around, scene.radius_m, scene.table_z_m, base);
+    this.stage.fit(around, scene.radius_m, scene.table_z_m, boxOf(this.product.outline(fixed)));
     this.workshop.fit(around, scene.table_z_m);
     this.pathLayer?.setRadius(scene.radius_m);
     this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
     if (this.pendingView !== null) {
       this.show(this.pendingView);
     } else if (loaded === "new" || (loaded === "completed" && this.rig.isWhereItBegan())) {
-      this.rig.begin(firstDirection(scene), this.product.firstOutline());
+      this.lookAnew();
     }
     this.hand.stop();
   }
@@ -262,7 +259,11 @@ export class Viewport {
     this.height = Math.max(1, clientHeight);
     this.renderer.setSize(this.width, this.height, false);
     // Side by side, each eye has half of the width.
+    const isAsAtFirst = this.rig.isWhereItBegan() && !this.hand.isBusy;
     this.rig.resize(this.view.stereo.peek() === "side" ? this.width / 2 : this.width, this.height);
+    if (isAsAtFirst) {
+      this.lookAnew();
+    }
     this.invalidate();
     // The canvas is empty after a change of its size: not to be seen.
     this.draw();
