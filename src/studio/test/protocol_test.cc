@@ -9,6 +9,7 @@
 #include "base/test/await_true.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
+#include "studio/live_run.h"
 #include "studio/scene_json.h"
 #include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
@@ -106,6 +107,11 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   const SceneSnapshot now = bench_.live().MakeSnapshot();
   EXPECT_EQ(testing::FindFault("Scene", MakeSceneJson(*now.scene, now.state)), "");
   EXPECT_EQ(testing::FindFault("Scene", MakeShieldedSceneJson(*now.scene, now.state)), "");
+  // A page that opens the scene before the first tick sees the base in its place as well.
+  const Json before = MakeSceneJson(*now.scene, MakeStart(*now.scene->model));
+  for (const Json& occurrence : before["occurrences"]) {
+    EXPECT_EQ(occurrence["placement"], occurrence["is_base"] ? "placed" : "loose");
+  }
 
   EXPECT_FALSE(Do({{"command", "record"}, {"on", true}, {"name", "First"}}).is_null());
   PumpUntil("recordings");
