@@ -30,11 +30,6 @@ inline constexpr double kSlack = 1 + 1e-9;
  longer. */
 template <typename T>
 struct UnsetAllocator : std::allocator<T> {
-  template <typename U>
-  struct rebind {
-    using other = UnsetAllocator<U>;
-  };
-
   UnsetAllocator() = default;
 
   template <typename U>

@@ -430,6 +430,7 @@ export async function clickFace(page, occurrence, face) {
 
 /** Presses on a part and drags it a little: it is in the hand then. */
 export async function takeByMouse(page, occurrence) {
+  await waitForState(page, ({ hasLease }) => hasLease);  // who does not steer takes nothing
   await waitForView(page);  // a part is pressed where it is seen when the button goes down
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   assert.ok(at.isVisible, `part ${occurrence} is to be seen`);
