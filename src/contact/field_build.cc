@@ -22,8 +22,8 @@
 namespace hvas::contact {
 namespace {
 
-// [bytes] of blocks for one part: docs/algorithms/contact.md, "Voxel", has it against 8e6.
-constexpr double kMemoryAim = 5e6;
+// [bytes] of blocks for one part: docs/algorithms/contact.md, "Voxel", has it against 5e6.
+constexpr double kMemoryAim = 8e6;
 constexpr double kBlocksPerPatch =
     2.2;  // Blocks for each patch of surface as large as a block's side.
 // Voxels are no finer and no coarser than this [m]: docs/algorithms/contact.md, "Voxel".
