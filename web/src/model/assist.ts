@@ -93,9 +93,12 @@ export function offLine(p: Vec3, line: Line): number {
   return norm(sub(r, scale(line.d, dot(r, line.d))));
 }
 
-/** How far off the way in the hand is in line with it still [m]. */
-export function inLine(line: Line): number {
-  return 0.03 * Math.max(1e-6, line.high) + 5e-4;
+/** How far off the way in the hand may be to go along it: a share of its length, and as much at least [m]; choices. */
+const kInLineShare = 0.03;
+const kInLineLeast = 5e-4;
+
+export function inLineWithin(line: Line): number {
+  return kInLineShare * line.high + kInLineLeast;
 }
 
 /** From this share of the way in outwards the hand may cross over to it. */

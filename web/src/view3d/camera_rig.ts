@@ -128,14 +128,14 @@ export class CameraRig {
 
   /** Looks from a direction so that all the points are in the picture, and no panel covers them. */
   lookFrom(direction: Vec3, points: readonly Vector3[], isSmooth = true): void {
+    if (points.length === 0) {
+      return;
+    }
     const back = new Vector3(...direction).normalize();
     if (Math.abs(back.z) > 0.999) {
       // From straight above, x is to be right.
       back.y -= 1e-4 * Math.sign(back.z);
       back.normalize();
-    }
-    if (points.length === 0) {
-      return;
     }
     const middle = boxOf(points).getCenter(new Vector3());
     const right = new Vector3(0, 0, 1).cross(back).normalize();

@@ -21,6 +21,7 @@ export interface Place {
   way: Line | null;
 }
 
+/** A part that a hand has taken up. */
 export interface TakenPart {
   occurrence: number;
   /** As it lay when it was taken. */
@@ -36,7 +37,7 @@ export interface TakenPart {
   tablePlaces: readonly TablePlace[];
 }
 
-/** The one in the product first. */
+/** All places of a part, the one in the product first. */
 export function placesOf(part: TakenPart, X_HB: Pose): [Place, ...Place[]] {
   const goal = compose(part.goal, inverse(X_HB));
   const way = part.step?.kind === "insert" ? wayInLine(goal, part.step.way_in, part.clearance) : null;

@@ -7,7 +7,7 @@ import {
   approach,
   ease,
   easeTurn,
-  inLine,
+  inLineWithin,
   leash,
   offLine,
   pointAtLine,
@@ -49,7 +49,8 @@ const kSameGrip = 1e-5;
 const kSameGripAngle = 1e-4;
 /** A free part may be further behind: what is known of it is some time old [m]. */
 const kFreeLeash = 0.08;
-/** What is in line with the way in may be this much further off before it has to come out again: it is known with delay. */
+/** What is in line with the way in may be this many times as far off before it has to come out again, as it is known
+ with delay: a choice. */
 const kStillInLine = 3;
 
 /** What the view knows of the eye. */
@@ -255,7 +256,7 @@ export class MouseHand {
       return hold.free.p;
     }
     const far = Math.max(offLine(hold.sent.p, line), offLine(heard, line));
-    hold.isInLine = far < (hold.isInLine ? kStillInLine : 1) * inLine(line);
+    hold.isInLine = far < (hold.isInLine ? kStillInLine : 1) * inLineWithin(line);
     return hold.isInLine ? snap.p : approach(hold.sent.p, line);
   }
 
