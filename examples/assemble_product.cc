@@ -10,10 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "assembly/open_product.h"
-#include "assembly/prepare_model.h"
-#include "assembly/run_assembly.h"
-#include "base/file_cache.h"
+#include <hvas/hvas.h>
 
 namespace {
 

@@ -123,6 +123,8 @@ void WriteStep(const Drawing& drawing, const std::string& path);
 [[nodiscard]] Drawing DrawLooseTwelve();
 /** Parts that give: an O-ring, a retaining ring and a cover with two snap hooks. */
 [[nodiscard]] Drawing DrawSnapJoint();
+/** A block with a blind bore of 20 mm, and a peg: what policies that learn begin with. */
+[[nodiscard]] Drawing DrawPegHole();
 
 namespace materials {
 inline const Material kSteel{"Steel C45", 7850};

@@ -36,6 +36,7 @@ LIBRARIES = {
     "libssl-dev": ("OpenSSL", "Apache-2.0", None),
     "libcli11-dev": ("CLI11", "BSD-3-Clause", None),
     "libcsv-dev": ("libcsv", "LGPL-2.1-or-later", None),
+    "pybind11-dev": ("pybind11", "BSD-3-Clause", None),
 }
 # Of a package that stands for another: where its notes are, and who has the rights.
 NOTES = {"libboost-dev": ("libboost1.74-dev", "the Boost authors, as each of its headers names them")}
@@ -50,7 +51,7 @@ PARTS = {
     )
 }
 # Of packages.txt, but not in the program.
-NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libompl-dev"}
+NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libompl-dev", "python3-dev"}
 # Whole texts that several of the notes refer to.
 COMMON = {"Apache-2.0": "Apache License 2.0", "LGPL-2.1": "GNU Lesser General Public License 2.1",
           "CC0-1.0": "Creative Commons CC0 1.0"}

@@ -246,10 +246,11 @@ Result<Puzzle> LoadPuzzle(const std::string& config, double spacing) {
   // The peer tells yes or no of triangles, to which surfaces are fitted.
   puzzle.tolerance = -100e-6;
   if (puzzle.name.rfind("alpha", 0) == 0) {
-    // Tubes with sharp edges: what crosses between two points of them is no deeper than is kept
-    // free. With points 5 mm apart and 0.1 mm kept free, triangles met at 2 to 7 % of the poses.
+    // Tubes with sharp edges: the check of a way leaves half of what is kept free at each point,
+    // and edges that cross between two points are half of their spacing nearer. With points 0.8 mm
+    // apart and 0.4 mm kept free, triangles met at 40 of 20,041 poses with one of five seeds.
     puzzle.tolerance = puzzle.name == "alpha-1.2" ? -300e-6 : -400e-6;
-    spacing = spacing > 0 ? spacing : 0.8e-3;
+    spacing = spacing > 0 ? spacing : -puzzle.tolerance;
   }
   puzzle.part = TurnOutward(*part);
   puzzle.around = TurnOutward(*around);

@@ -217,6 +217,10 @@ TEST(SnapJoint, FilesAreWhatTheProgramWrites) {
   ExpectFilesAsStored(DrawSnapJoint());
 }
 
+TEST(PegHole, VolumesByHandAndByKernelAgree) {
+  ExpectHandVolumes(DrawPegHole());
+}
+
 TEST(SnapJoint, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawSnapJoint());
 }

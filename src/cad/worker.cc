@@ -14,7 +14,9 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -215,6 +217,18 @@ void Attend(const WorkerCall& call, pid_t child, int pipe, WorkerRun* run) {
   }
 }
 
+// The program or library that has this code; empty where that is not known.
+fs::path FindOwnFile() {
+  Dl_info info{};
+  if (::dladdr(reinterpret_cast<const void*>(&FindWorker), &info) == 0 ||
+      info.dli_fname == nullptr) {
+    return {};
+  }
+  std::error_code error;
+  const fs::path file = fs::canonical(info.dli_fname, error);
+  return error ? fs::path() : file;
+}
+
 }  // namespace
 
 Result<fs::path> FindWorker() {
@@ -229,7 +243,15 @@ Result<fs::path> FindWorker() {
   }
   std::error_code error;
   const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kName;
-  for (const fs::path& path : {beside, fs::path(HVAS_BUILT_CAD_WORKER)}) {
+  std::vector<fs::path> places{beside};
+  // Of a library in lib or lib/<architecture>, or in a package of Python.
+  const fs::path library = FindOwnFile().parent_path();
+  for (fs::path folder = library; folder != library.root_path() && places.size() < 4;
+       folder = folder.parent_path()) {
+    places.push_back(folder / "bin" / kName);
+  }
+  places.emplace_back(HVAS_BUILT_CAD_WORKER);
+  for (const fs::path& path : places) {
     if (::access(path.c_str(), X_OK) == 0) {
       return path;
     }

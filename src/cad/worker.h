@@ -27,8 +27,9 @@ inline constexpr int kWorkerUsage = 64;
 inline constexpr int kWorkerNoMemory = 71;
 inline constexpr int kWorkerNoOutput = 74;
 
-/** $HVAS_CAD_WORKER, else `hvas-cad` beside the running program, else that of the build tree that
- this program was built in. Errors: kNotFound. */
+/** $HVAS_CAD_WORKER, else `hvas-cad` beside the running program, else in `bin` of the folder that
+ the library of HVAS lies in, or of one of the two above it, else that of the build tree that this
+ code was built in. Errors: kNotFound. */
 [[nodiscard]] Result<std::filesystem::path> FindWorker();
 
 struct WorkerCall {

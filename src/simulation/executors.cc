@@ -8,148 +8,10 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "spatial/rounding.h"
+#include "simulation/haptic_loop.h"
 
 namespace hvas::simulation {
 namespace {
-
-/** Session time of a tick [ns]. */
-std::int64_t PeriodOf(const Simulation& simulation) {
-  return std::llround(1e9 * simulation.options().dt);
-}
-
-/** A tick after which the last second is worth keeping. */
-bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
-             const device::DeviceState& device, const haptics::TickOutput& out) noexcept {
-  // What the flight recorder is for.
-  constexpr std::uint32_t kFaults = haptics::kGateNotFinite | haptics::kGateLateModel |
-                                    haptics::kGateLostClient | haptics::kGateNoDevice |
-                                    haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick;
-  const std::uint32_t begun = out.gate_actions & ~actions_before;
-  return (begun & kFaults) != 0 ||
-         (device.condition != before.condition && device::IsFault(device.condition));
-}
-
-/** What the loop remembers of one hand from tick to tick. */
-struct HandInLoop {
-  Operator* person{nullptr};
-  haptics::TickOutput last;
-  haptics::HoldState state_before{haptics::HoldState::kEmpty};
-  device::DeviceState device_before;
-  std::uint32_t actions_before{0};
-};
-
-OperatorInput MakeInput(HandInLoop* hand, std::int64_t t_ns, std::int64_t period_ns) noexcept {
-  const haptics::TickOutput& last = hand->last;
-  OperatorInput input;
-  input.t_ns = t_ns;
-  input.dt = 1e-9 * static_cast<double>(period_ns);
-  input.F_H_D = last.F_H_D;
-  input.hears_seated = last.state == haptics::HoldState::kSeated;
-  input.hears_capture = last.state == haptics::HoldState::kCaptured &&
-                        hand->state_before != haptics::HoldState::kCaptured;
-  input.sees_part = last.occurrence.is_valid();
-  input.X_WD = last.X_WD;
-  input.X_WH = last.X_WH;
-  input.workspace = last.workspace;
-  hand->state_before = last.state;
-  return input;
-}
-
-/** The haptic loop's body, the same in both executors. */
-class HapticLoop {
- public:
-  HapticLoop(const Execution& execution, ExecutionReport* report)
-      : execution_(execution),
-        haptics_(execution.simulation->haptics()),
-        report_(report),
-        period_ns_(PeriodOf(*execution.simulation)),
-        shedder_(period_ns_) {
-    hands_[0].person = execution.hand;
-    hands_[1].person = execution.second_hand;
-    for (std::size_t i = 0; i < hand_count(); ++i) {
-      haptics::TickOutput& last = hands_[i].last;
-      last.workspace = haptics_.options(i).workspace.mapping;
-      last.X_WH = last.workspace.X_WD;
-    }
-  }
-
-  /** Every hand once; returns how long they computed [ns].
-   @param wake_up_ns  How late the tick begins; 0 in virtual time. */
-  std::int64_t Tick(std::int64_t wake_up_ns) noexcept {
-    std::int64_t compute_ns = 0;
-    for (std::size_t i = 0; i < hand_count(); ++i) {
-      compute_ns += TickHand(i, wake_up_ns);
-    }
-    report_->compute.Add(compute_ns);
-    report_->overruns += compute_ns > period_ns_ ? 1 : 0;
-    if (execution_.sheds_load) {
-      ++report_->ticks_at_level[static_cast<std::size_t>(shedder_.level())];
-      haptics_.SetEffortLevel(shedder_.Update(compute_ns));
-    }
-    ++report_->ticks;
-    t_ns_ += period_ns_;
-    return compute_ns;
-  }
-
-  [[nodiscard]] int effort_level() const noexcept { return shedder_.level(); }
-
-  [[nodiscard]] std::int64_t t_ns() const noexcept { return t_ns_; }
-
- private:
-  [[nodiscard]] std::size_t hand_count() const noexcept {
-    return hands_[1].person != nullptr ? 2 : 1;
-  }
-
-  /** Returns its compute time [ns]. */
-  std::int64_t TickHand(std::size_t i, std::int64_t wake_up_ns) noexcept {
-    HandInLoop& hand = hands_[i];
-    device::DeviceState device = hand.person->Step(MakeInput(&hand, t_ns_, period_ns_));
-    device.t_ns = t_ns_;
-    device.X_DH = spatial::Rounded(device.X_DH);
-    device.V_DH = spatial::Rounded(device.V_DH);
-    const std::int64_t start_ns = ThreadCpuNs();
-    hand.last = haptics_.Tick(i, device);
-    const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
-    hand.person->Apply(hand.last.F_H_D);
-    report_->slowest.Add({t_ns_, i, compute_ns, hand.last.occurrence, hand.last.state,
-                          hand.last.points_tested, hand.last.contact_count});
-    report_->contact_limits.Add(hand.last);
-    if (execution_.log != nullptr) {
-      execution_.log->SetComputeOfLast(compute_ns);
-    }
-    KeepFlight(&hand, {device, hand.last, wake_up_ns, compute_ns, shedder_.level(), i});
-    if (execution_.sink != nullptr) {
-      execution_.sink->OnTick(i, device, hand.last);
-    }
-    return compute_ns;
-  }
-
-  void KeepFlight(HandInLoop* hand, FlightTick tick) noexcept {
-    const bool is_fault = IsFault(hand->device_before, hand->actions_before, tick.device, tick.out);
-    hand->device_before = tick.device;
-    hand->actions_before = tick.out.gate_actions;
-    if (execution_.flight == nullptr) {
-      return;
-    }
-    if (!execution_.is_live) {  // the same bytes every time
-      tick.wake_up_ns = 0;
-      tick.compute_ns = 0;
-    }
-    execution_.flight->Keep(tick);
-    if (is_fault) {
-      execution_.flight->Trigger();
-    }
-  }
-
-  const Execution& execution_;
-  HapticSide& haptics_;
-  ExecutionReport* report_;
-  std::int64_t period_ns_;
-  LoadShedder shedder_;
-  std::array<HandInLoop, 2> hands_;
-  std::int64_t t_ns_{0};
-};
 
 /** Tells of the last second of a loop, once a second. RT-safe. */
 class StatusTeller {
@@ -222,32 +84,69 @@ void SlowTicks::Add(const SlowTick& tick) noexcept {
   ticks_[i] = tick;
 }
 
-ExecutionReport RunLockstep(const Execution& given) {
+struct Lockstep::State {
+  explicit State(const Execution& given) : execution(given), loop(execution, &report) {}
+
+  Execution execution;
   ExecutionReport report;
+  HapticLoop loop;
+  std::int64_t ticks_per_physics{0};
+  std::int64_t ticks{0};
+  std::int64_t start_ns{MonotonicNs()};
+  std::int64_t start_cpu_ns{ThreadCpuNs()};
+};
+
+Lockstep::Lockstep(const Execution& given) {
   Execution execution = given;
   execution.is_live = false;
   execution.sheds_load = false;  // what is left out would depend on the machine
-  HapticLoop loop(execution, &report);
-  const std::int64_t ticks_per_physics =
-      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / PeriodOf(*execution.simulation));
-  const std::int64_t start_ns = MonotonicNs();
-  const std::int64_t start_cpu_ns = ThreadCpuNs();
-  StepPhysics(execution);
-  while (!execution.is_done() && loop.t_ns() < execution.limit_ns) {
-    for (std::int64_t i = 0; i < ticks_per_physics; ++i) {
-      (void)loop.Tick(0);
-    }
-    if (!execution.is_physics_late || !execution.is_physics_late(loop.t_ns())) {
-      StepPhysics(execution);
-    }
+  state_ = std::make_unique<State>(execution);
+  state_->ticks_per_physics =
+      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / CalcPeriod(*execution.simulation));
+  StepPhysics(state_->execution);
+}
+
+Lockstep::~Lockstep() = default;
+
+bool Lockstep::is_over() const {
+  const Execution& execution = state_->execution;
+  return (execution.is_done && execution.is_done()) || state_->loop.t_ns() >= execution.limit_ns;
+}
+
+std::int64_t Lockstep::t_ns() const {
+  return state_->loop.t_ns();
+}
+
+void Lockstep::Tick() {
+  const Execution& execution = state_->execution;
+  (void)state_->loop.Tick(0);
+  if (++state_->ticks % state_->ticks_per_physics == 0 &&
+      (!execution.is_physics_late || !execution.is_physics_late(state_->loop.t_ns()))) {
+    StepPhysics(execution);
   }
-  FinishFlight(execution);
-  report.wall_ns = MonotonicNs() - start_ns;
-  report.lost_events = execution.simulation->lost_events();
-  report.cpu_ns = ThreadCpuNs() - start_cpu_ns;
-  report.session_ns = loop.t_ns();
+}
+
+ExecutionReport Lockstep::Finish() {
+  FinishFlight(state_->execution);
+  ExecutionReport& report = state_->report;
+  report.wall_ns = MonotonicNs() - state_->start_ns;
+  report.lost_events = state_->execution.simulation->lost_events();
+  report.cpu_ns = ThreadCpuNs() - state_->start_cpu_ns;
+  report.session_ns = state_->loop.t_ns();
   report.scheduling = "virtual time";
   return report;
+}
+
+ExecutionReport RunLockstep(const Execution& execution) {
+  Lockstep lockstep(execution);
+  const std::int64_t ticks_per_physics =
+      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / CalcPeriod(*execution.simulation));
+  while (!lockstep.is_over()) {
+    for (std::int64_t i = 0; i < ticks_per_physics; ++i) {
+      lockstep.Tick();
+    }
+  }
+  return lockstep.Finish();
 }
 
 ExecutionReport RunRealtime(const Execution& given) {
@@ -261,7 +160,7 @@ ExecutionReport RunRealtime(const Execution& given) {
   std::thread haptic([&] {
     report.grant = RequestRealtime();
     HapticLoop loop(execution, &report);
-    const std::int64_t period_ns = PeriodOf(*execution.simulation);
+    const std::int64_t period_ns = CalcPeriod(*execution.simulation);
     StatusTeller status(execution.status, report.grant, period_ns);
     Pacer pacer(period_ns);
     while (!is_stopping.load(std::memory_order_relaxed)) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "base/histogram.h"
@@ -108,6 +109,32 @@ struct Execution {
   std::function<bool(std::int64_t)> is_physics_late;
   bool sheds_load{true};  ///< Realtime only.
   bool is_live{false};    ///< Set by the executor.
+};
+
+/** Virtual time on the calling thread, one tick at a time, for a caller who does something between
+ the ticks. Each hundredth of a second the physics loop has its step. */
+class Lockstep {
+ public:
+  /** Does the first step of physics, as the base is put in its fixture.
+   @param execution  Its is_done may be null: then only the limit ends it. */
+  explicit Lockstep(const Execution& execution);
+  ~Lockstep();
+  Lockstep(const Lockstep&) = delete;
+  Lockstep& operator=(const Lockstep&) = delete;
+
+  /** One tick of every hand, and the step of physics that is due after it. */
+  void Tick();
+
+  [[nodiscard]] bool is_over() const;
+
+  [[nodiscard]] std::int64_t t_ns() const;  ///< Session time.
+
+  /** Writes out what the flight recorder has, and gives the report. */
+  [[nodiscard]] ExecutionReport Finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /** Virtual time on the calling thread: bit for bit repeatable, faster than real time. */

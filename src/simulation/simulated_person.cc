@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/arm_hand.h"
 #include "simulation/person_habits.h"
 
 namespace hvas::simulation {
@@ -258,14 +259,11 @@ void SimulatedPerson::LearnLoad(const spatial::Wrench& F_H_W) noexcept {
 
 void SimulatedPerson::MoveHand(const spatial::Wrench& F_H_W) noexcept {
   LearnLoad(F_H_W);
-  const Vec3 p_wanted = p_ref_ + Tremor();
-  const Vec3 f = options_.stiffness * (p_wanted - X_WH_.p()) +
-                 options_.damping * (v_ref_ - V_H_.v) + F_H_W.f - carried_force_;
-  const Vec3 t = options_.turn_stiffness * spatial::RotationBetween(X_WH_.q(), q_ref_) -
-                 options_.turn_damping * V_H_.w + F_H_W.t;
-  V_H_.v += dt_ / options_.mass * f;
-  V_H_.w += dt_ / options_.inertia * t;
-  X_WH_ = spatial::Integrate(X_WH_, V_H_, dt_);
+  HandReference reference;
+  reference.X_WR = spatial::Pose(q_ref_, p_ref_ + Tremor());
+  reference.v_R_W = v_ref_;
+  reference.f_W = -carried_force_;
+  AdvanceArm(options_, reference, F_H_W, dt_, &X_WH_, &V_H_);
 }
 
 void SimulatedPerson::BeginApproach(const OperatorInput& input) noexcept {

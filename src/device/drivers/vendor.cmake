@@ -37,6 +37,10 @@ set_target_properties(hvas_stub_dependency PROPERTIES
 hvas_stub(hvas_stub_needy libHD.so ${HVAS_STUB_FOLDER}/needy emulation/stub_needy.cc)
 target_link_libraries(hvas_stub_needy PRIVATE hvas_stub_dependency)
 
+if(NOT HVAS_TESTS)
+  return()
+endif()
+
 hvas_test(library_faults_test SOURCES test/library_faults_test.cc DEPS hvas::device)
 hvas_test(library_loading_test SOURCES test/library_loading_test.cc DEPS hvas::device)
 hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device)

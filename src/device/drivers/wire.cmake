@@ -26,6 +26,10 @@ target_include_directories(simulated_handle PRIVATE plugin)
 target_compile_options(simulated_handle PRIVATE -Wall -Wextra -Wpedantic)
 set_target_properties(simulated_handle PROPERTIES PREFIX "" C_STANDARD 11)
 
+if(NOT HVAS_TESTS)
+  return()
+endif()
+
 hvas_test(wire_faults_test SOURCES test/wire_faults_test.cc DEPS hvas::device)
 hvas_test(network_test SOURCES test/network_test.cc DEPS hvas::device OpenSSL::Crypto)
 

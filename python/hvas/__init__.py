@@ -1,0 +1,57 @@
+"""HVAS: feel an assembly before anyone cuts metal.
+
+    import hvas
+    product = hvas.open("gear_pump.step")
+    model = hvas.prepare(product)
+    outcome = model.assemble()
+
+All lengths are in metres, forces in newtons, angles in radians.
+"""
+
+from . import fits
+from ._hvas import STATES, Model, Product, Record, Run, __version__
+from ._hvas import open_product as _open_product
+from ._hvas import prepare as _prepare
+from .types import Error
+
+__all__ = ["Error", "Model", "Product", "Record", "Run", "STATES", "__version__", "fits", "open", "prepare"]
+
+
+def open(file, *, fits=(), unit=None, encoding="", apart=(), rigid=(), cache=True, time_limit=120.0, progress=None):
+    """Opens a CAD file: STEP, IGES, a mesh file or a folder of meshes.
+
+    Args:
+        file: Path of the file.
+        fits: Fits to assign, as "AXIS=H7/g6"; they take precedence over those of the file.
+        unit: Unit of length of the file, whatever it states [m]; None: what it states.
+        encoding: Encoding of names in a STEP file, as iconv names it; empty: it is guessed.
+        apart: What is not to be welded into one body; ["all"]: nothing.
+        rigid: Parts that may not give on their way; ["all"]: none.
+        cache: Uses the caches on disk.
+        time_limit: Time after which opening ends with an error [s].
+        progress: Called with a stage and a fraction of 0 to 1. What it raises ends the work.
+
+    Returns:
+        A Product; what was odd about the file is in its `diagnostics`.
+
+    Raises:
+        hvas.Error: with what happened, where, and a remedy.
+    """
+    return _open_product(file, list(fits), unit, encoding, list(apart), list(rigid), cache, time_limit, progress)
+
+
+def prepare(product, *, seed=1, base="", first_parts=(), cache=True, progress=None):
+    """Prepares a product: contact shapes, fits with sizes drawn by the seed, the order of assembly.
+
+    Args:
+        product: As `open` gives it.
+        seed: Draws the actual sizes of the fits. `Model.with_seed` draws others without the work.
+        base: Name, path or id ("o12") of the part that stays in the fixture; empty: it is found.
+        first_parts: Names, paths or ids of parts that come first.
+        cache: Uses the cache of contact shapes on disk.
+        progress: As for `open`.
+
+    Raises:
+        hvas.Error
+    """
+    return _prepare(product, seed, base, list(first_parts), cache, progress)

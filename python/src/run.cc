@@ -1,0 +1,349 @@
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "bindings.h"
+
+namespace hvas::python {
+namespace {
+
+using assembly::SteppedRun;
+using assembly::TickRow;
+using simulation::Model;
+using ModelPtr = std::shared_ptr<const Model>;
+
+haptics::Condition ToCondition(const std::string& name) {
+  if (name == "collision") {
+    return haptics::Condition::kCollision;
+  }
+  if (name == "constraint") {
+    return haptics::Condition::kConstraint;
+  }
+  if (name == "hybrid") {
+    return haptics::Condition::kHybrid;
+  }
+  throw py::value_error("a condition is 'collision', 'constraint' or 'hybrid', not '" + name + "'");
+}
+
+const std::string& PathOf(const Model& model, product::OccurrenceId id) {
+  return model.product->occurrences[id.index()].path;
+}
+
+// Python holds models behind a class of its own, as pybind11 has no holder of const objects.
+struct ModelHandle {
+  ModelPtr model;
+  std::vector<Diagnostic> diagnostics;
+};
+
+py::object Describe(const simulation::SequenceStep& step, const Model& model, std::size_t index) {
+  static constexpr const char* kNames[] = {"base", "insert", "park", "remove", "aside", "return"};
+  py::list members;
+  for (const product::OccurrenceId id : step.members) {
+    members.append(id.index());
+  }
+  const spatial::Pose goal =
+      simulation::GoalOf(step, model.bodies[step.occurrence.index()].X_WB_goal);
+  return MakeDataclass(
+      "Step",
+      py::dict(py::arg("index") = index,
+               py::arg("kind") = kNames[static_cast<std::size_t>(step.kind)],
+               py::arg("occurrence") = step.occurrence.index(),
+               py::arg("path") = PathOf(model, step.occurrence), py::arg("members") = members,
+               py::arg("goal") = ToTuple(goal), py::arg("extraction") = ToTuple(step.extraction_W),
+               py::arg("engage_distance") = step.engage_distance));
+}
+
+py::list ListSteps(const ModelHandle& handle) {
+  py::list list;
+  const auto& steps = handle.model->sequence.steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    list.append(Describe(steps[i], *handle.model, i));
+  }
+  return list;
+}
+
+py::dict ListGaps(const ModelHandle& handle) {
+  py::dict gaps;
+  for (const simulation::SequenceGap& gap : handle.model->sequence.gaps) {
+    gaps[py::str(PathOf(*handle.model, gap.occurrence))] = gap.reason;
+  }
+  return gaps;
+}
+
+std::unique_ptr<ModelHandle> Prepare(const std::shared_ptr<product::Product>& product,
+                                     std::uint64_t seed, const std::string& base,
+                                     const std::vector<std::string>& first_parts, bool is_cached,
+                                     const py::object& progress) {
+  std::stop_source stop;
+  assembly::PrepareOptions options;
+  options.seed = seed;
+  options.base = base;
+  options.first_parts = first_parts;
+  options.progress = MakeProgress(progress, &stop);
+  options.stop = stop.get_token();
+  if (is_cached) {
+    options.shape_cache = assembly::MakeShapeCache(FileCache::DefaultDirectory());
+  }
+  Diagnostics found;
+  auto model = [&] {
+    const py::gil_scoped_release unlocked;
+    return assembly::PrepareModel(*product, options, &found);
+  }();
+  auto handle = std::make_unique<ModelHandle>();
+  handle->model = Take(std::move(model));
+  handle->diagnostics = found.items();
+  return handle;
+}
+
+std::unique_ptr<ModelHandle> DrawSizes(const ModelHandle& handle, std::uint64_t seed) {
+  Diagnostics found;
+  auto drawn = std::make_unique<ModelHandle>();
+  drawn->model = simulation::DrawSizes(*handle.model, seed, handle.model->pairs, &found);
+  drawn->diagnostics = found.items();
+  return drawn;
+}
+
+py::list Plan(const ModelHandle& handle, std::size_t orders,
+              const std::vector<std::pair<std::string, std::string>>& before,
+              const std::map<std::string, double>& weights) {
+  assembly::PlanOptions options;
+  options.most_orders = orders;
+  options.before = before;
+  const std::map<std::string, double*> known{
+      {"turn", &options.weights.turn},
+      {"direction_change", &options.weights.direction_change},
+      {"tool_change", &options.weights.tool_change},
+      {"loose", &options.weights.loose},
+      {"cramped", &options.weights.cramped},
+      {"reach", &options.weights.reach},
+      {"force", &options.weights.force},
+      {"hand_time", &options.weights.hand_time}};
+  for (const auto& [name, value] : weights) {
+    const auto weight = known.find(name);
+    if (weight == known.end()) {
+      std::string names;
+      for (const auto& [each, unused] : known) {
+        names += (names.empty() ? "" : ", ") + each;
+      }
+      throw py::value_error("no weight is called '" + name + "'; there are " + names);
+    }
+    *weight->second = value;
+  }
+  auto found = [&] {
+    const py::gil_scoped_release unlocked;
+    return assembly::PlanOrder(*handle.model, options);
+  }();
+  const assembly::OrderPlan plan = Take(std::move(found));
+  py::list list;
+  for (const simulation::FoundOrder& order : plan.search.orders) {
+    py::list parts;
+    for (const std::size_t move : order.moves) {
+      parts.append(PathOf(*handle.model, plan.rules.moves[move].parts.front()));
+    }
+    list.append(
+        MakeDataclass("Order", py::dict(py::arg("cost") = order.cost, py::arg("parts") = parts)));
+  }
+  return list;
+}
+
+py::object Describe(const simulation::PartResult& part, const Model& model) {
+  return MakeDataclass(
+      "PartResult",
+      py::dict(py::arg("occurrence") = part.occurrence.index(),
+               py::arg("path") = PathOf(model, part.occurrence), py::arg("seated") = part.is_seated,
+               py::arg("reason") = part.reason, py::arg("note") = part.note,
+               py::arg("time") = part.time, py::arg("path_length") = part.path,
+               py::arg("peak_true") = part.peak_true, py::arg("peak_felt") = part.peak_felt,
+               py::arg("fit_true") = part.fit_true, py::arg("fit_felt") = part.fit_felt,
+               py::arg("deepest") = part.deepest, py::arg("arrival") = part.arrival));
+}
+
+py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
+                    const std::vector<std::string>& devices, const std::string& condition,
+                    bool is_realtime, double limit_s, const std::filesystem::path& record,
+                    bool is_replaced, const py::object& on_part) {
+  std::stop_source stop;
+  assembly::RunOptions options;
+  options.seed = seed;
+  options.devices = devices;
+  options.condition = ToCondition(condition);
+  options.is_realtime = is_realtime;
+  options.limit_s = limit_s;
+  options.record = record;
+  options.is_record_replaced = is_replaced;
+  options.stop = stop.get_token();
+  const auto tell = MakeProgress(py::none(), &stop);
+  options.on_part = [&](const simulation::AssemblyProgress&, const simulation::PartResult& part) {
+    tell("", 0);  // Ctrl-C.
+    if (!on_part.is_none() && !stop.stop_requested()) {
+      const py::gil_scoped_acquire lock;
+      MakeProgress(py::cpp_function(
+                       [&](const std::string&, double) { on_part(Describe(part, *handle.model)); }),
+                   &stop)("", 0);
+    }
+  };
+  auto run = [&] {
+    const py::gil_scoped_release unlocked;
+    return assembly::RunAssembly(handle.model, options);
+  }();
+  ThrowInterrupt();
+  const assembly::RunOutcome outcome = Take(std::move(run));
+  if (outcome.record_error) {
+    Throw(*outcome.record_error);
+  }
+  py::list parts;
+  for (const simulation::PartResult& part : outcome.parts) {
+    parts.append(Describe(part, *handle.model));
+  }
+  return MakeDataclass(
+      "Outcome",
+      py::dict(py::arg("parts") = parts, py::arg("complete") = outcome.is_complete(),
+               py::arg("digest") = outcome.digest, py::arg("ticks") = outcome.execution.ticks,
+               py::arg("session_time") = 1e-9 * static_cast<double>(outcome.execution.session_ns),
+               py::arg("wall_time") = 1e-9 * static_cast<double>(outcome.execution.wall_ns)));
+}
+
+/** A run that Python steps: the rows are views of what the run keeps. */
+class PythonRun {
+ public:
+  PythonRun(const ModelHandle& handle, std::size_t step, const py::object& start,
+            const std::string& condition, bool has_contact_in_holes, double stiffness,
+            double damping, double turn_stiffness, double turn_damping, double rate_hz)
+      : model_(handle.model) {
+    assembly::SteppedOptions options;
+    options.step = step;
+    if (!start.is_none()) {
+      options.X_WB_start = ToPose(start);
+    }
+    options.condition = ToCondition(condition);
+    options.contact_in_holes = has_contact_in_holes;
+    options.arm.stiffness = stiffness;
+    options.arm.damping = damping;
+    options.arm.turn_stiffness = turn_stiffness;
+    options.arm.turn_damping = turn_damping;
+    options.rate_hz = rate_hz;
+    run_ = Take(SteppedRun::Create(model_, options));
+    reference_.X_WR = HandPose();
+    reference_.is_gripping = true;
+  }
+
+  static py::array Step(const py::object& self, const py::object& pose, const py::object& force,
+                        std::size_t ticks, bool grip) {
+    auto& run = self.cast<PythonRun&>();
+    if (ticks < 1 || ticks > kMostTicks) {
+      throw py::value_error("ticks are 1 to " + std::to_string(kMostTicks) + " a call");
+    }
+    if (!pose.is_none()) {  // Of the part; the hand keeps its grip.
+      run.reference_.X_WR = ToPose(pose) * run.run_->X_HB().Inverse();
+    }
+    run.reference_.f_W = Vec3::Zero();
+    if (!force.is_none()) {
+      const auto f = py::cast<std::array<double, 3>>(force);
+      run.reference_.f_W = Vec3(f[0], f[1], f[2]);
+      if (!run.reference_.f_W.allFinite()) {
+        throw py::value_error("the force is not finite");
+      }
+    }
+    run.reference_.is_gripping = grip;
+    {
+      const py::gil_scoped_release unlocked;
+      run.rows_ = run.run_->Step(run.reference_, ticks);
+    }
+    return View(self);
+  }
+
+  /** Rows of the last call of step, where they are; the next one writes over them. */
+  static py::array View(const py::object& self) {
+    auto& run = self.cast<PythonRun&>();
+    return py::array(py::dtype::of<TickRow>(), {static_cast<py::ssize_t>(run.rows_.size())},
+                     {static_cast<py::ssize_t>(sizeof(TickRow))}, run.rows_.data(), self);
+  }
+
+  /** Where the hand is. */
+  [[nodiscard]] spatial::Pose HandPose() const {
+    const double* X = run_->last().X_WH;
+    return {Quat(X[3], X[4], X[5], X[6]), Vec3(X[0], X[1], X[2])};
+  }
+
+  [[nodiscard]] const SteppedRun& run() const { return *run_; }
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+
+ private:
+  static constexpr std::size_t kMostTicks = 1'000'000;  // A quarter of a GB of rows: a choice.
+
+  ModelPtr model_;
+  std::unique_ptr<SteppedRun> run_;
+  simulation::HandReference reference_;
+  std::span<const TickRow> rows_;
+};
+
+}  // namespace
+
+void DefineRun(py::module_* module) {
+  PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
+                       insertion, axial_true, offset, tilt, contacts, state);
+  const simulation::PersonOptions arm;
+  py::class_<ModelHandle>(*module, "Model")
+      .def_property_readonly("steps", &ListSteps)
+      .def_property_readonly("gaps", &ListGaps)
+      .def_property_readonly("seed", [](const ModelHandle& handle) { return handle.model->seed; })
+      .def("with_seed", &DrawSizes, py::arg("seed"))
+      .def("plan", &Plan, py::arg("orders") = 5,
+           py::arg("before") = std::vector<std::pair<std::string, std::string>>(),
+           py::arg("weights") = std::map<std::string, double>())
+      .def("assemble", &Assemble, py::arg("seed") = 1,
+           py::arg("devices") = std::vector<std::string>{""}, py::arg("condition") = "hybrid",
+           py::arg("realtime") = false, py::arg("limit_s") = 0.0, py::arg("record") = "",
+           py::arg("replace") = false, py::arg("on_part") = py::none())
+      .def("__repr__", [](const ModelHandle& handle) {
+        return "<hvas.Model " + handle.model->product->source + ": " +
+               std::to_string(handle.model->sequence.steps.size()) + " steps>";
+      });
+  module->def("prepare", &Prepare, py::arg("product"), py::arg("seed"), py::arg("base"),
+              py::arg("first_parts"), py::arg("cache"), py::arg("progress"));
+  py::class_<PythonRun>(*module, "Run")
+      .def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
+                    double, double, double, double, double>(),
+           py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
+           py::arg("condition") = "hybrid", py::arg("contact_in_holes") = false,
+           py::arg("stiffness") = arm.stiffness, py::arg("damping") = arm.damping,
+           py::arg("turn_stiffness") = arm.turn_stiffness,
+           py::arg("turn_damping") = arm.turn_damping, py::arg("rate_hz") = 1000.0)
+      .def(
+          "step",
+          [](const py::object& self, const py::object& pose, const py::object& force,
+             std::size_t ticks,
+             bool grip) { return PythonRun::Step(self, pose, force, ticks, grip); },
+          py::arg("pose") = py::none(), py::arg("force") = py::none(), py::arg("ticks") = 1,
+          py::arg("grip") = true)
+      .def_property_readonly("rows", [](const py::object& self) { return PythonRun::View(self); })
+      .def_property_readonly("seated", [](const PythonRun& run) { return run.run().is_seated(); })
+      .def_property_readonly("t", [](const PythonRun& run) { return run.run().last().t_s; })
+      .def_property_readonly("pose",
+                             [](const PythonRun& run) {
+                               const TickRow& row = run.run().last();
+                               return py::array_t<double>(7, row.X_WB);
+                             })
+      .def_property_readonly(
+          "led", [](const PythonRun& run) { return ToTuple(run.HandPose() * run.run().X_HB()); })
+      .def_property_readonly(
+          "force",
+          [](const PythonRun& run) { return py::array_t<double>(6, run.run().last().F_felt_W); })
+      .def_property_readonly("goal",
+                             [](const PythonRun& run) { return ToTuple(run.run().X_WB_goal()); })
+      .def_property_readonly("poses",
+                             [](const PythonRun& run) {
+                               py::list poses;
+                               for (const spatial::Pose& X_WB : run.run().ListPoses()) {
+                                 poses.append(ToTuple(X_WB));
+                               }
+                               return poses;
+                             })
+      .def_property_readonly("mass", [](const PythonRun& run) {
+        return simulation::CombineMass(run.model(), run.run().step()).mass;
+      });
+  module->attr("STATES") = py::make_tuple("empty", "free", "near", "captured", "mating", "seated");
+}
+
+}  // namespace hvas::python

@@ -1,0 +1,35 @@
+# Installs what a program needs to build on HVAS into an empty folder, builds the examples against it, and runs them.
+set(prefix ${build}/examples_test/prefix)
+set(examples ${build}/examples_test/build)
+file(REMOVE_RECURSE ${build}/examples_test)
+
+function(run)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\nended with ${status}:\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+foreach(component runtime sdk)
+  run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix} --component ${component})
+endforeach()
+run(${CMAKE_COMMAND} -S ${source}/examples -B ${examples} -G ${generator} -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher} -D CMAKE_CXX_FLAGS=-Wall\ -Wextra\ -Werror)
+run(${CMAKE_COMMAND} --build ${examples})
+
+# example(<name> <what its output has to match> argument...)
+function(example name expected)
+  run(${examples}/${name} ${ARGN})
+  if(NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "${name} printed\n${output}\nand not ${expected}")
+  endif()
+  message(STATUS "${name}: ${CMAKE_MATCH_0}")
+endfunction()
+
+set(bushing ${source}/products/bushing.step)
+example(assemble_product "3 of 3 parts in place, digest 6197623702470afb658d445beb54f658" ${bushing})
+example(inspect_mates "H7/[a-z][0-9].*mates, 3 parts" ${bushing})
+example(plan_order "order 1, cost [0-9.]+: " ${source}/products/gear_pump.step)
+example(record_and_replay "[0-9]+ ticks, bit for bit" ${bushing} ${build}/examples_test/session.hvasrec)
+example(own_hand "in its place after [0-9.]+ s" ${bushing})

@@ -1,0 +1,9 @@
+#include "api/version.h"
+
+namespace hvas::api {
+
+const char* LibraryVersion() noexcept {
+  return kHeaderVersion;
+}
+
+}  // namespace hvas::api
