@@ -51,7 +51,7 @@ PARTS = {
     )
 }
 # Of packages.txt, but not in the program.
-NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libompl-dev", "python3-dev"}
+NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libompl-dev"}
 # Whole texts that several of the notes refer to.
 COMMON = {"Apache-2.0": "Apache License 2.0", "LGPL-2.1": "GNU Lesser General Public License 2.1",
           "CC0-1.0": "Creative Commons CC0 1.0"}
@@ -67,7 +67,7 @@ others of the same interface; of the rest, parts are compiled into it. This file
 def packages():
     """The development packages of packages.txt that end up in the program, OpenCASCADE's as one."""
     lines = (ROOT / "packages.txt").read_text().split("\n")
-    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|coinor-[^ ]*|[^ ]*json[^ ]*|zlib1g)-dev", line)}
+    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|coinor-[^ ]*|[^ ]*json[^ ]*|pybind11|zlib1g)-dev", line)}
     return {PARTS.get(name, name) for name in names - NOT_SHIPPED}
 
 
@@ -164,7 +164,7 @@ def entry(name, version, licence, how, text):
     return f"### {name} {version}\n\n{licence}, {how}.\n\n```text\n{text.strip()}\n```\n"
 
 
-HEADERS_ONLY = {"libeigen3-dev", "libexpected-dev", "nlohmann-json3-dev", "libboost-dev", "libcli11-dev"}
+HEADERS_ONLY = {"libeigen3-dev", "libexpected-dev", "nlohmann-json3-dev", "libboost-dev", "libcli11-dev", "pybind11-dev"}
 
 
 def write():
