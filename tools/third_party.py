@@ -51,7 +51,7 @@ PARTS = {
     )
 }
 # Of packages.txt, but not in the program.
-NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libompl-dev"}
+NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libmujoco-dev", "libompl-dev"}
 # Whole texts that several of the notes refer to.
 COMMON = {"Apache-2.0": "Apache License 2.0", "LGPL-2.1": "GNU Lesser General Public License 2.1",
           "CC0-1.0": "Creative Commons CC0 1.0"}

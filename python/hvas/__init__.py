@@ -8,13 +8,15 @@
 All lengths are in metres, forces in newtons, angles in radians.
 """
 
+import pathlib as _pathlib
+
 from . import fits
 from ._hvas import STATES, Model, Product, Record, Run, __version__
 from ._hvas import open_product as _open_product
 from ._hvas import prepare as _prepare
 from .types import Error
 
-__all__ = ["Error", "Model", "Product", "Record", "Run", "STATES", "__version__", "fits", "open", "prepare"]
+__all__ = ["Error", "Model", "Product", "Record", "Run", "STATES", "__version__", "export", "fits", "open", "prepare"]
 
 
 def open(file, *, fits=(), unit=None, encoding="", apart=(), rigid=(), cache=True, time_limit=120.0, progress=None):
@@ -55,3 +57,26 @@ def prepare(product, *, seed=1, base="", first_parts=(), cache=True, progress=No
         hvas.Error
     """
     return _prepare(product, seed, base, list(first_parts), cache, progress)
+
+
+def export(product, file):
+    """Writes a product for a simulator: .mjcf or .xml (MuJoCo), .urdf with its meshes beside it, or .usda.
+
+    Returns:
+        The files that were written.
+
+    Raises:
+        ValueError: for another extension.
+        OSError: where a file cannot be written.
+    """
+    file = _pathlib.Path(file)
+    format = file.suffix.lower().lstrip(".")
+    if format not in ("mjcf", "xml", "urdf", "usda"):
+        raise ValueError(f"{file}: the extension has to be .mjcf, .xml, .urdf or .usda")
+    written = []
+    for path, contents in product.export_files(format, file.stem).items():
+        target = file if path == f"{file.stem}.{format}" else file.parent / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(contents)
+        written.append(target)
+    return written

@@ -37,6 +37,8 @@ class Product:
         """n x 3, in the part's frame [m]."""
     def triangles(self, part: int) -> NDArray[np.uint32]:
         """n x 3 indices into vertices, outward; a view that keeps the product alive."""
+    def export_files(self, format: str, name: str) -> dict[str, bytes]:
+        """Files of an export ("mjcf", "urdf" or "usda") by their paths; hvas.export writes them."""
 
 class Model:
     """A product that is prepared: immutable, and shared by all runs."""

@@ -91,6 +91,27 @@ py::array Triangles(const py::object& self, std::size_t part) {
                                     triangles.empty() ? nullptr : triangles.front().data(), self);
 }
 
+// Files of an export by their paths.
+py::dict Export(const Product& product, const std::string& format, const std::string& name) {
+  if (product.occurrences.empty()) {
+    throw py::value_error("there is no part to export");
+  }
+  const auto files = [&]() -> exchange::ExportedFiles {
+    const py::gil_scoped_release unlocked;
+    const exchange::ExportedProduct exported = exchange::MakeExported(product);
+    if (format == "urdf") {
+      return exchange::MakeUrdf(exported, name);
+    }
+    return {{name + "." + format,
+             format == "usda" ? exchange::MakeUsda(exported) : exchange::MakeMjcf(exported)}};
+  }();
+  py::dict contents;
+  for (const auto& [path, bytes] : files) {
+    contents[py::str(path)] = py::bytes(bytes);
+  }
+  return contents;
+}
+
 std::shared_ptr<Product> Open(const std::filesystem::path& file,
                               const std::vector<std::string>& fits,
                               const std::optional<double>& unit, const std::string& encoding,
@@ -159,6 +180,7 @@ void DefineProduct(py::module_* module) {
           py::arg("part"))
       .def("vertices", &Vertices, py::arg("part"))
       .def("triangles", &Triangles, py::arg("part"))
+      .def("export_files", &Export, py::arg("format"), py::arg("name"))
       .def("__repr__", [](const Product& product) {
         return "<hvas.Product " + product.source + ": " +
                std::to_string(product.occurrences.size()) + " parts, " +

@@ -64,6 +64,15 @@ class Open(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             hvas.open(PRODUCTS / "gear_pump.step", cache=False, progress=stop)
 
+    def test_writes_what_simulators_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("rig.mjcf", "rig.urdf", "rig.usda"):
+                files = hvas.export(self.product, pathlib.Path(folder) / name)
+                self.assertTrue(all(file.stat().st_size > 0 for file in files))
+                self.assertIn("H7/g6", (pathlib.Path(folder) / name).read_text())
+            with self.assertRaisesRegex(ValueError, "extension"):
+                hvas.export(self.product, "rig.txt")
+
     def test_python_m_hvas_shows_a_file(self):
         run = subprocess.run([sys.executable, "-m", "hvas", "info", PRODUCTS / "bushing.step"], capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stderr)

@@ -26,6 +26,7 @@ OUTSIDE = {
     "sqlite3": (r"sqlite3\.h", r"SQLite::"),
     "zstd": (r"zstd\.h", r"\$\{HVAS_ZSTD"),
     "HDF5": (r"hdf5\.h", r"\$\{HVAS_HDF5"),
+    "MuJoCo": (r"mujoco/", r"\$\{HVAS_MUJOCO"),
     "CLI": (r"CLI/", r"CLI11::"),
     "Boost": (r"boost/", r"Boost::"),
     "yaml": (r"yaml-cpp/", r"\$\{HVAS_YAML"),

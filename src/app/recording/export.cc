@@ -22,10 +22,15 @@
 #include "app/product/selection.h"
 #include "app/recording/export_record.h"
 #include "assembly/open_product.h"
+#include "assembly/prepare_model.h"
 #include "base/atomic_file.h"
 #include "cad/export_step.h"
 #include "cad/glb.h"
 #include "cad/input_file.h"
+#include "evidence/demonstrations.h"
+#include "exchange/mjcf.h"
+#include "exchange/urdf.h"
+#include "exchange/usda.h"
 
 namespace hvas::app {
 namespace {
@@ -51,11 +56,20 @@ std::string FormatOf(const std::filesystem::path& file) {
   return format;
 }
 
+/** A format of a simulator of rigid bodies. */
+bool IsOfSimulator(const std::string& format) {
+  return format == ".mjcf" || format == ".xml" || format == ".urdf" || format == ".usda";
+}
+
 /** What can be known to fail before the work. */
 Result<void> Check(const ExportOptions& options, const std::string& format) {
   const std::string name = options.output.string();
   if (const auto input = cad::CheckInput(options.load.file); !input) {
     return Unexpected(input.error());
+  }
+  if (options.record.is_demonstrations && !IsHdf5(format)) {
+    return Fail(ErrorCode::kInvalid, "demonstrations are written as HDF5 only", name,
+                "end the file name with .h5");
   }
   if (IsRecord(options.load.file)) {
     if (!IsRecordFormat(format)) {
@@ -63,10 +77,11 @@ Result<void> Check(const ExportOptions& options, const std::string& format) {
                   "the file name has no extension of a format that a record can be exported to",
                   name, std::string("end it with ") + kRecordFormats);
     }
-  } else if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp") {
+  } else if (format != ".glb" && format != ".json" && format != ".step" && format != ".stp" &&
+             !IsOfSimulator(format) && !options.record.is_demonstrations) {
     return Fail(ErrorCode::kInvalid,
                 "the file name has no extension of a format that can be written", name,
-                "use the extension .glb, .json or .step");
+                "use the extension .glb, .json, .step, .mjcf, .xml, .urdf or .usda");
   }
   std::error_code error;
   if (std::filesystem::equivalent(options.load.file, options.output, error)) {
@@ -114,6 +129,61 @@ Result<void> WriteJson(const ExportOptions& options, const Product& product,
                              "\n");
 }
 
+/** Writes what a simulator reads, and tells which parts are met as their hulls alone. */
+Result<void> WriteForSimulator(const ExportOptions& options, const Product& product,
+                               const std::string& format) {
+  if (product.occurrences.empty()) {
+    return Fail(ErrorCode::kUnsupported, "there is no part in it", product.source,
+                "export a file with solids");
+  }
+  const exchange::ExportedProduct exported = exchange::MakeExported(product);
+  for (const exchange::ExportedBody& body : exported.bodies) {
+    if (body.form.is_hull_only) {
+      fmt::print(stderr,
+                 "hvas: {}: its surface has too many triangles; it is met as its hull, with holes "
+                 "closed\n",
+                 product.occurrences[body.occurrence.index()].path);
+    }
+  }
+  exchange::ExportedFiles files;
+  const std::string name = options.output.stem().string();
+  if (format == ".urdf") {
+    files = exchange::MakeUrdf(exported, name);
+  } else {
+    files[options.output.filename().string()] =
+        format == ".usda" ? exchange::MakeUsda(exported) : exchange::MakeMjcf(exported);
+  }
+  for (const auto& [path, bytes] : files) {
+    // A URDF is called after the output, whatever the case of its extension.
+    const std::filesystem::path file =
+        path == name + ".urdf" ? options.output : options.output.parent_path() / path;
+    std::error_code error;
+    std::filesystem::create_directories(file.parent_path(), error);
+    if (const auto written = WriteAtomically(file, bytes); !written) {
+      return Unexpected(written.error());
+    }
+  }
+  return {};
+}
+
+/** Writes the planned way of each part as a demonstration. */
+Result<void> WritePlannedWays(const ExportOptions& options, const Product& product) {
+  constexpr double kTicks = 1000;  // [Hz], as those of a record.
+  assembly::PrepareOptions prepare;
+  prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
+  if (!options.load.is_quiet && IsWatched()) {
+    prepare.progress = ShowProgress;
+  }
+  Diagnostics diagnostics;
+  const auto model = assembly::PrepareModel(product, prepare, &diagnostics);
+  if (!model) {
+    return Unexpected(model.error());
+  }
+  return evidence::WriteDemonstrations(
+      evidence::ListPlannedWays(**model, kTicks / static_cast<double>(options.record.every)),
+      product.source, options.output);
+}
+
 Result<void> ExportProduct(const ExportOptions& options, const std::string& format) {
   Diagnostics diagnostics;
   Result<Product> product = LoadProduct(options.load, &diagnostics);
@@ -134,6 +204,12 @@ Result<void> ExportProduct(const ExportOptions& options, const std::string& form
   if (format == ".glb") {
     const Result<std::string> glb = cad::MakeGlb(*product, options.is_fine);
     return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
+  }
+  if (options.record.is_demonstrations) {
+    return WritePlannedWays(options, *product);
+  }
+  if (IsOfSimulator(format)) {
+    return WriteForSimulator(options, *product, format);
   }
   return format == ".json" ? WriteJson(options, *product, diagnostics)
                            : WriteStep(options, *product, motions);
@@ -166,10 +242,10 @@ int RunExport(const ExportOptions& options) {
 }  // namespace
 
 void AddExport(CLI::App* app, int* status) {
-  CLI::App* command =
-      app->add_subcommand("export",
-                          "Export a CAD file as .glb, .json or .step, or a record as .csv, .json, "
-                          ".h5, .mcap or .glb");
+  CLI::App* command = app->add_subcommand(
+      "export",
+      "Export a CAD file as .glb, .json, .step, .mjcf, .urdf or .usda, or a record as "
+      ".csv, .json, .h5, .mcap or .glb");
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->load.file, "CAD file or record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();
@@ -188,6 +264,10 @@ void AddExport(CLI::App* app, int* status) {
       "         faces, and with each vertex the index of its face (_FACE_ID)\n"
       "  .json  what hvas inspect --json prints\n"
       "  .step  AP214: structure, poses, names and colours, all in one file\n"
+      "  .mjcf, .xml  MuJoCo: masses, convex pieces that are met, frames, fits and true sizes of\n"
+      "         mates; shafts and holes have the middle of what their fits allow\n"
+      "  .urdf  the same as a robot, with meshes beside it in NAME_meshes/\n"
+      "  .usda  the same as a USD stage in text, with its physics\n"
       "Formats for a record of hvas assemble or the studio (docs/record.md), every number with its "
       "unit:\n"
       "  .csv   a row for each tick          .json  ticks, events and session\n"
@@ -201,11 +281,13 @@ void AddExport(CLI::App* app, int* status) {
       "  hvas export pump.step -o pump.glb\n"
       "  hvas export pump.step -o pump.json --meshes --fine\n"
       "  hvas export pump.stp -o whole.step --force\n"
+      "  hvas export pump.step -o pump.mjcf\n"
       "  hvas export pump.step -o exploded.step --poses exploded.json\n"
       "  hvas assemble pump.step --record run.hvasrec && hvas export pump.step -o run.glb --poses "
       "run.hvasrec\n"
       "  hvas export run.hvasrec -o run.csv --every 10 --from 20 --to 30\n"
-      "  hvas export run.hvasrec -o run.mcap --every 20");
+      "  hvas export run.hvasrec -o run.mcap --every 20\n"
+      "  hvas export run.hvasrec -o demonstrations.h5 --demonstrations --every 20");
   command->callback([options, status] { *status = RunExport(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/regular_file.h"
+#include "evidence/demonstrations.h"
 #include "evidence/tables.h"
 
 namespace hvas::app {
@@ -43,11 +44,18 @@ void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
       ->add_option("--every", selection->every,
                    "For a record: keep one of so many ticks of each hand (not for .glb)")
       ->check(CLI::Range(1, 1'000'000));
+  command->add_flag("--demonstrations", selection->is_demonstrations,
+                    "Write an .h5 of demonstrations to learn from, in the layout of robomimic: of "
+                    "a record each hold of a part, of a CAD file the planned way of each part");
 }
 
 bool IsRecord(const std::filesystem::path& file) {
   constexpr std::string_view kMagic = "SQLite format 3";
   return ReadFileHead(file, kMagic.size()) == kMagic;
+}
+
+bool IsHdf5(const std::string& ending) {
+  return ending == ".h5" || ending == ".hdf5";
 }
 
 bool IsRecordFormat(const std::string& ending) {
@@ -64,7 +72,17 @@ Result<std::string> ExportRecord(const std::filesystem::path& file,
   evidence::Selection chosen;
   chosen.span = {std::llround(1e9 * selection.from_s), std::llround(1e9 * selection.to_s)};
   chosen.every = selection.every;
-  if (const auto written = FindWriter(ending)(&*reader, chosen, output); !written) {
+  if (selection.is_demonstrations) {
+    auto demonstrations = evidence::ListDemonstrations(&*reader, chosen);
+    if (!demonstrations) {
+      return Unexpected(demonstrations.error());
+    }
+    const auto written =
+        evidence::WriteDemonstrations(*demonstrations, file.filename().string(), output);
+    if (!written) {
+      return Unexpected(written.error());
+    }
+  } else if (const auto written = FindWriter(ending)(&*reader, chosen, output); !written) {
     return Unexpected(written.error());
   }
   const auto verified = reader->Verify();

@@ -17,6 +17,7 @@ struct RecordSelection {
   double from_s{-1e9};
   double to_s{1e9};
   std::int64_t every{1};
+  bool is_demonstrations{false};  ///< Holds of parts as demonstrations, in an HDF5 file.
 };
 
 /** Adds --from, --to and --every to a command. */
@@ -27,6 +28,9 @@ void AddRecordSelection(CLI::App* command, RecordSelection* selection);
 
 /** The endings that ExportRecord() knows, for people. */
 inline constexpr const char* kRecordFormats = ".csv, .json, .h5, .mcap or .glb";
+
+/** Whether an ending is that of an HDF5 file. */
+[[nodiscard]] bool IsHdf5(const std::string& ending);
 
 [[nodiscard]] bool IsRecordFormat(const std::string& ending);
 

@@ -356,6 +356,38 @@ TEST(ExportPoses, ErrorsNameTheLine) {
   expect(R"({"occurrence": "o0"}, {"occurrence": "o0"})", "twice");
 }
 
+TEST(ExportForSimulators, WritesEachFormatAndTheSameBytesTwice) {
+  const TemporaryFolder folder;
+  for (const char* format : {"mjcf", "xml", "urdf", "usda"}) {
+    const std::string file = (folder / (std::string("rig.") + format)).string();
+    const std::string product = ProductFile("bushing");
+    ASSERT_EQ(RunHvas({"export", product, "-o", file, "-q"}).status, 0) << format;
+    const std::string first = ReadText(file);
+    EXPECT_NE(first.find("H7/g6"), std::string::npos) << format;
+    ASSERT_EQ(RunHvas({"export", product, "-o", file, "-q", "--force"}).status, 0) << format;
+    EXPECT_EQ(ReadText(file), first) << format;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "rig_meshes/part0.stl"));
+}
+
+TEST(ExportDemonstrations, OfARecordAndOfAPlan) {
+  const TemporaryFolder folder;
+  const std::string record = (folder / "run.hvasrec").string();
+  const std::string rig = ProductFile("bushing");
+  ASSERT_EQ(RunHvas({"assemble", rig, "--record", record, "-q"}).status, 0);
+  for (const std::string& input : {record, rig}) {
+    const std::string file = (folder / "demonstrations.h5").string();
+    const Ran ran = RunHvas(
+        {"export", input, "-o", file, "--demonstrations", "--every", "20", "--force", "-q"});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ReadText(file).substr(1, 3), "HDF");
+  }
+  const Ran refused =
+      RunHvas({"export", record, "-o", (folder / "x.csv").string(), "--demonstrations"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, ".h5", refused.err);
+}
+
 TEST(ExportErrorTest, NothingIsWrittenOverOrHalf) {
   const TemporaryFolder folder;
   const auto letter = folder.Write("letter.glb", "Dear all,\n");
@@ -369,8 +401,8 @@ TEST(ExportErrorTest, NothingIsWrittenOverOrHalf) {
   const std::string rig = ProductFile("bushing");
   expect(letter.string(), "--force", rig);
   EXPECT_EQ(ReadText(letter), "Dear all,\n");
-  expect((folder / "rig.obj").string(), ".glb, .json or .step", rig);
-  expect((folder / "rig").string(), ".glb, .json or .step", rig);
+  expect((folder / "rig.obj").string(), ".glb, .json, .step, .mjcf", rig);
+  expect((folder / "rig").string(), ".glb, .json, .step, .mjcf", rig);
   expect((folder / "no" / "rig.glb").string(), "folder", rig);
   expect(rig, "the output is the input file", rig);
   expect((folder / "x.glb").string(), "letter.glb", letter.string());
