@@ -107,6 +107,8 @@ class Run:
     @property
     def poses(self) -> list[Pose]:
         """Of all parts, by the ids of their occurrences."""
+    def picture(self, width: int = 320, height: int = 240, to_eye: tuple[float, float, float] = ...) -> NDArray[np.uint8]:
+        """Height x width x 4 (red, green, blue, opacity): what is in its place and in the hand, drawn without a screen."""
     @property
     def mass(self) -> float:
         """Of what is in the hand [kg]."""

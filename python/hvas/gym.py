@@ -23,7 +23,7 @@ import hvas
 
 try:
     import gymnasium
-    from gymnasium.spaces import Box
+    from gymnasium.spaces import Box, Dict
     Base = gymnasium.Env
 except ImportError:
     gymnasium = None
@@ -52,6 +52,18 @@ except ImportError:
 
         def __repr__(self):
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
+
+    class Dict:
+        """Several spaces by their names; the part of gymnasium.spaces.Dict that the environments need."""
+
+        def __init__(self, spaces):
+            self.spaces = dict(spaces)
+
+        def __getitem__(self, name):
+            return self.spaces[name]
+
+        def contains(self, x):
+            return x.keys() == self.spaces.keys() and all(space.contains(x[name]) for name, space in self.spaces.items())
 
     class Base:
         """What gymnasium.Env gives its environments."""
@@ -136,14 +148,16 @@ class Insertion(Base):
         contact_in_holes: A shaft with play touches its hole: it can tilt, jam and wedge.
         clear: How far before the place where it engages the part begins [m].
         ticks: Haptic ticks in a step of the environment.
+        picture: Width and height of a picture drawn without a screen; then an observation is a dictionary of the
+            "numbers" and the "picture" (height x width x 3).
     """
 
-    metadata = {"render_modes": []}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
     most_turn = 0.1  # The hand is turned no further ahead of where it is [rad]: 0.6 N m.
-    render_mode = None
 
     def __init__(self, model, step=1, *, mode="pose", condition="hybrid", contact_in_holes=True, seeds_fits=True,
-                 offset=1e-3, tilt=0.01, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, force=20.0, ticks=20, limit_s=20.0):
+                 offset=1e-3, tilt=0.01, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, force=20.0, ticks=20, limit_s=20.0,
+                 picture=None, render_mode=None):
         if mode not in ("pose", "wrench"):
             raise ValueError("mode is 'pose' or 'wrench'")
         self.model, self.mode, self.condition = model, mode, condition
@@ -156,7 +170,11 @@ class Insertion(Base):
         self._p, self._q, self._R = goal[:3], goal[3:], _rotation(goal[3:])
         self._out = self._R.T @ np.array(self.part.extraction)  # The way out in the frame of the place.
         self._way = self.part.engage_distance + clear
+        self.picture, self.render_mode = picture, render_mode
         self.observation_space = Box(-np.inf, np.inf, (14,), np.float64)
+        if picture:
+            pixels = Box(0, 255, (picture[1], picture[0], 3), np.uint8)
+            self.observation_space = Dict({"numbers": self.observation_space, "picture": pixels})
         self.action_space = Box(-1.0, 1.0, (6,), np.float32)
         self.run = None
 
@@ -178,7 +196,7 @@ class Insertion(Base):
         self._led_p, self._led_turn = position, turn
         self._begin = self.run.t
         self._distance = self._way
-        return self._observe(), self._info()
+        return self._with_picture(self._observe()), self._info()
 
     def step(self, action):
         action = np.clip(np.asarray(action, dtype=np.float64), -1, 1)
@@ -201,10 +219,19 @@ class Insertion(Base):
         reward = (self._distance - distance) / self._way - 1e-3 * excess + (10.0 if seated else 0.0)
         self._distance = distance
         truncated = not seated and self.run.t - self._begin >= self.limit_s
-        return observation, reward, seated, truncated, self._info()
+        return self._with_picture(observation), reward, seated, truncated, self._info()
 
     def render(self):
-        """There is no picture; `hvas export` and the studio draw records."""
+        """A picture of 640 by 480 pixels where render_mode is "rgb_array"."""
+        return self._draw(640, 480) if self.render_mode == "rgb_array" else None
+
+    def _draw(self, width, height):
+        picture = self.run.picture(width, height).astype(np.float32)
+        opacity = picture[:, :, 3:] / 255
+        return (picture[:, :, :3] * opacity + 255 * (1 - opacity)).astype(np.uint8)  # Before white.
+
+    def _with_picture(self, numbers):
+        return {"numbers": numbers, "picture": self._draw(*self.picture)} if self.picture else numbers
 
     def _pose(self, position, turn):
         """Seven numbers in the world of a pose in the frame of the place."""
@@ -269,6 +296,12 @@ def make(name, **options):
     return ENVIRONMENTS[name](**options)
 
 
+def _stack(observations):
+    if isinstance(observations[0], dict):
+        return {name: np.stack([observation[name] for observation in observations]) for name in observations[0]}
+    return np.stack(observations)
+
+
 class Vector:
     """Several environments of one kind, stepped at once on threads; a finished one begins anew by itself.
 
@@ -287,7 +320,7 @@ class Vector:
     def reset(self, *, seed=None):
         seeds = [None if seed is None else seed + i for i in range(self.num_envs)]
         results = list(self._pool.map(lambda pair: pair[0].reset(seed=pair[1]), zip(self.environments, seeds)))
-        return np.stack([observation for observation, _ in results]), [info for _, info in results]
+        return _stack([observation for observation, _ in results]), [info for _, info in results]
 
     def step(self, actions):
         def step_one(pair):
@@ -300,7 +333,7 @@ class Vector:
 
         results = list(self._pool.map(step_one, zip(self.environments, actions)))
         observations, rewards, terminated, truncated, infos = zip(*results)
-        return np.stack(observations), np.array(rewards), np.array(terminated), np.array(truncated), list(infos)
+        return _stack(observations), np.array(rewards), np.array(terminated), np.array(truncated), list(infos)
 
     def close(self):
         self._pool.shutdown()

@@ -1,8 +1,10 @@
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <cmath>
 #include <memory>
 
 #include "bindings.h"
+#include "evidence/picture.h"
 
 namespace hvas::python {
 namespace {
@@ -203,6 +205,42 @@ py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
                py::arg("wall_time") = 1e-9 * static_cast<double>(outcome.execution.wall_ns)));
 }
 
+/** The parts that are in their places and in the hand, drawn without a screen. */
+py::array Draw(const SteppedRun& run, int width, int height, const std::array<double, 3>& to_eye) {
+  constexpr int kMostPixels = 4096;
+  if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels) {
+    throw py::value_error("a picture has 1 to " + std::to_string(kMostPixels) + " pixels a side");
+  }
+  const Vec3 eye(to_eye[0], to_eye[1], to_eye[2]);
+  if (!eye.allFinite() || std::hypot(eye.x(), eye.y()) < 1e-3 * std::abs(eye.z())) {
+    throw py::value_error("the direction to the eye is not to be vertical");
+  }
+  std::vector<std::uint8_t> pixels;
+  {
+    const py::gil_scoped_release unlocked;
+    const product::Product& product = *run.model().product;
+    spatial::Box box_W = product.box_W;
+    std::vector<evidence::PictureBody> bodies;
+    const std::vector<simulation::PartState> parts = run.ListParts();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].placement == simulation::Placement::kPlaced ||
+          parts[i].placement == simulation::Placement::kHeld) {
+        const product::Part& part = product.part_of(product::OccurrenceId(i));
+        bodies.push_back({&part, parts[i].X_WB, std::nullopt, {}});
+        // As far out as the part begins, so that the view stays.
+        box_W.Add(
+            spatial::Transform(spatial::Pose(run.step().engage_distance * run.step().extraction_W) *
+                                   product.occurrences[i].X_WB,
+                               part.box_B));
+      }
+    }
+    pixels = evidence::DrawPixels(bodies, evidence::Projection(box_W, width, height, eye));
+  }
+  py::array_t<std::uint8_t> array({height, width, 4});
+  std::copy(pixels.begin(), pixels.end(), array.mutable_data());
+  return array;
+}
+
 /** A run that Python steps: the rows are views of what the run keeps. */
 class PythonRun {
  public:
@@ -335,11 +373,18 @@ void DefineRun(py::module_* module) {
       .def_property_readonly("poses",
                              [](const PythonRun& run) {
                                py::list poses;
-                               for (const spatial::Pose& X_WB : run.run().ListPoses()) {
-                                 poses.append(ToTuple(X_WB));
+                               for (const simulation::PartState& part : run.run().ListParts()) {
+                                 poses.append(ToTuple(part.X_WB));
                                }
                                return poses;
                              })
+      .def(
+          "picture",
+          [](const PythonRun& run, int width, int height, const std::array<double, 3>& to_eye) {
+            return Draw(run.run(), width, height, to_eye);
+          },
+          py::arg("width") = 320, py::arg("height") = 240,
+          py::arg("to_eye") = std::array<double, 3>{0.5, -0.7, 0.5})
       .def_property_readonly("mass", [](const PythonRun& run) {
         return simulation::CombineMass(run.model(), run.run().step()).mass;
       });

@@ -69,6 +69,18 @@ class PegInHole(unittest.TestCase):
                 break
         self.assertTrue(terminated)
 
+    def test_pictures_show_the_part_come_nearer(self):
+        environment = gym.Insertion(self.environment.model, seeds_fits=False, picture=(64, 48), render_mode="rgb_array")
+        observation, _ = environment.reset(seed=1)
+        self.assertTrue(environment.observation_space.contains(observation))
+        first = observation["picture"]
+        for _ in range(60):
+            observation, *_ = environment.step(straight_in(environment, observation["numbers"]))
+        drawn = [np.any(picture < 250, axis=2) for picture in (first, observation["picture"])]
+        tops = [np.nonzero(picture.any(axis=1))[0][0] for picture in drawn]
+        self.assertGreater(tops[1], tops[0])  # The peg's upper end is lower.
+        self.assertEqual(environment.render().shape, (480, 640, 3))
+
     def test_conforms_to_gymnasium(self):
         try:
             from gymnasium.utils.env_checker import check_env

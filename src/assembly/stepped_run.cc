@@ -185,12 +185,14 @@ std::span<const TickRow> SteppedRun::Step(const simulation::HandReference& refer
   return rows_;
 }
 
-std::vector<spatial::Pose> SteppedRun::ListPoses() const {
-  std::vector<spatial::Pose> poses;
-  for (const simulation::PartState& part : simulation_->physics().parts()) {
-    poses.push_back(part.X_WB);
+std::vector<simulation::PartState> SteppedRun::ListParts() const {
+  std::vector<simulation::PartState> parts = simulation_->physics().parts();
+  const auto* held = simulation_->physics().held(0);
+  if (held != nullptr) {
+    const double* X = last().X_WB;
+    parts[step().occurrence.index()].X_WB = {Quat(X[3], X[4], X[5], X[6]), Vec3(X[0], X[1], X[2])};
   }
-  return poses;
+  return parts;
 }
 
 }  // namespace hvas::assembly

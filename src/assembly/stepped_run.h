@@ -87,8 +87,9 @@ class SteppedRun {
     return model_->sequence.steps[options_.step];
   }
 
-  /** Poses of all parts in W, by OccurrenceId, as the physics loop knows them. */
-  [[nodiscard]] std::vector<spatial::Pose> ListPoses() const;
+  /** Where all parts are, by OccurrenceId, as the physics loop knows it; what is in the hand as
+   displayed. */
+  [[nodiscard]] std::vector<simulation::PartState> ListParts() const;
 
  private:
   // Keeps a row of each tick.

@@ -258,6 +258,20 @@ std::string MakePicture(const std::vector<PictureBody>& bodies, const Projection
   return MakePng(canvas.Develop(), projection.width(), projection.height());
 }
 
+std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
+                                     const Projection& projection) {
+  Canvas canvas(projection);
+  canvas.Draw(bodies);
+  const std::string rows = canvas.Develop();  // Each behind the byte of its filter.
+  const std::size_t length = 4 * static_cast<std::size_t>(projection.width());
+  std::vector<std::uint8_t> pixels;
+  for (std::size_t at = 1; at < rows.size(); at += length + 1) {
+    pixels.insert(pixels.end(), rows.begin() + static_cast<std::ptrdiff_t>(at),
+                  rows.begin() + static_cast<std::ptrdiff_t>(at + length));
+  }
+  return pixels;
+}
+
 double RateMarks(const std::vector<PictureBody>& bodies, const Projection& projection) {
   Canvas canvas(projection);
   canvas.Draw(bodies);

@@ -51,6 +51,11 @@ struct PictureBody {
 [[nodiscard]] std::string MakePicture(const std::vector<PictureBody>& bodies,
                                       const Projection& projection);
 
+/** The same picture as numbers: red, green, blue and opacity of each pixel, row by row from above.
+ */
+[[nodiscard]] std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
+                                                   const Projection& projection);
+
 /** The share of the marked faces in the projection that nothing hides, times the share of the
  picture that they fill. */
 [[nodiscard]] double RateMarks(const std::vector<PictureBody>& bodies,

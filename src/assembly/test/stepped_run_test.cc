@@ -108,7 +108,11 @@ TEST(SteppedRunTest, TakesThePartFromTheTable) {
   const auto run = SteppedRun::Create(PegInBlockModel(), {});
   ASSERT_TRUE(run.has_value()) << run.error().ToString();
   EXPECT_EQ((*run)->step().occurrence.index(), 1U);
-  EXPECT_EQ((*run)->ListPoses().size(), 2U);
+  const auto parts = (*run)->ListParts();
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].placement, simulation::Placement::kPlaced);
+  EXPECT_EQ(parts[1].placement, simulation::Placement::kHeld);
+  EXPECT_EQ(parts[1].X_WB.p().z(), (*run)->last().X_WB[2]);
 }
 
 }  // namespace

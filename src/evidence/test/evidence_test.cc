@@ -225,6 +225,13 @@ TEST_F(EvidenceTest, PictureShowsTheProductBeforeNothing) {
   EXPECT_EQ(alpha(0, 0), 0);
   EXPECT_EQ(alpha(kWidth - 1, kHeight - 1), 0);
   EXPECT_EQ(alpha(kWidth / 2, kHeight / 2), 255);
+  const std::vector<std::uint8_t> pixels =
+      DrawPixels({{&product.parts[0], product.occurrences[0].X_WB, std::nullopt, {}},
+                  {&product.parts[1], product.occurrences[1].X_WB, std::nullopt, {}}},
+                 projection);
+  ASSERT_EQ(pixels.size(), static_cast<std::size_t>(4 * kWidth * kHeight));
+  EXPECT_EQ(pixels[3], 0);
+  EXPECT_EQ(pixels[4 * (kHeight / 2 * kWidth + kWidth / 2) + 3], 255);
   // What is nearer to the eye, from the front above, is less deep.
   EXPECT_LT(projection.Project(Vec3(0, -1, 0)).z(), projection.Project(Vec3(0, 1, 0)).z());
   EXPECT_LT(projection.Project(Vec3(0, 0, 1)).y(), projection.Project(Vec3(0, 0, 0)).y());
