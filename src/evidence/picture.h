@@ -51,8 +51,8 @@ struct PictureBody {
 [[nodiscard]] std::string MakePicture(const std::vector<PictureBody>& bodies,
                                       const Projection& projection);
 
-/** The same picture as numbers: red, green, blue and opacity of each pixel, row by row from above.
- */
+/** Draws the same picture as numbers: red, green, blue and opacity of each pixel, row by row from
+ above. */
 [[nodiscard]] std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
                                                    const Projection& projection);
 
