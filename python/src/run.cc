@@ -125,7 +125,7 @@ py::list Plan(const ModelHandle& handle, std::size_t orders,
     if (weight == known.end()) {
       std::string names;
       for (const auto& [each, unused] : known) {
-        names += (names.empty() ? "" : ", ") + each;
+        names.append(names.empty() ? "" : ", ").append(each);
       }
       throw py::value_error("no weight is called '" + name + "'; there are " + names);
     }
@@ -368,8 +368,7 @@ void DefineRun(py::module_* module) {
       .def_property_readonly(
           "force",
           [](const PythonRun& run) { return py::array_t<double>(6, run.run().last().F_felt_W); })
-      .def_property_readonly("goal",
-                             [](const PythonRun& run) { return ToTuple(run.run().X_WB_goal()); })
+      .def_property_readonly("goal", [](const PythonRun& run) { return ToTuple(run.run().goal()); })
       .def_property_readonly("poses",
                              [](const PythonRun& run) {
                                py::list poses;

@@ -75,8 +75,8 @@ class SteppedRun {
     return rows_.back().state == static_cast<std::int32_t>(haptics::HoldState::kSeated);
   }
 
-  /** Where the part is to go. */
-  [[nodiscard]] const spatial::Pose& X_WB_goal() const { return X_WB_goal_; }
+  /** Where the part is to go: its pose in W. */
+  [[nodiscard]] const spatial::Pose& goal() const { return X_WB_goal_; }
 
   /** Pose of the part in the hand, as it was taken. */
   [[nodiscard]] const spatial::Pose& X_HB() const { return X_HB_; }

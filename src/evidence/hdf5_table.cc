@@ -35,7 +35,7 @@ Result<void> WriteTicks(record::Reader* reader, const Selection& selection, Hdf5
       block.clear();
     }
   };
-  const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
+  Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
     for (std::size_t k = 0; k < sets.size(); ++k) {
       blocks[k].push_back(TickColumns()[k].get(tick));
     }

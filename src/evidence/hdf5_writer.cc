@@ -77,6 +77,7 @@ void Hdf5Writer::Append(hid_t set, hsize_t at, const std::vector<double>& values
 
 void Hdf5Writer::WriteTexts(hid_t group, const char* name, const std::vector<std::string>& texts) {
   std::vector<const char*> values;
+  values.reserve(texts.size());
   for (const std::string& text : texts) {
     values.push_back(text.c_str());
   }

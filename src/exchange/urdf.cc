@@ -90,6 +90,7 @@ std::vector<Vec3> ListFace(const std::vector<Vec3>& points, std::size_t a, std::
   std::sort(on_plane.begin(), on_plane.end(),
             [&](std::size_t i, std::size_t j) { return angle_of(i) < angle_of(j); });
   std::vector<Vec3> face;
+  face.reserve(on_plane.size());
   for (const std::size_t i : on_plane) {
     face.push_back(points[i]);
   }

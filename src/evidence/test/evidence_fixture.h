@@ -43,7 +43,7 @@ class EvidenceTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<hvas::testing::TemporaryFolder>();
-    const auto model = simulation::testing::PegInBlockModel();
+    const auto& model = simulation::testing::PegInBlockModel();
     record::RecorderOptions options;
     options.path = *folder_ / "session";
     const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));

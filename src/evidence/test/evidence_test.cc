@@ -164,7 +164,7 @@ TEST_F(EvidenceTest, SummaryHasTheWholeSession) {
 TEST_F(EvidenceTest, SummaryCountsTicksInWhichContactHadNoRoom) {
   record::RecorderOptions options;
   options.path = out / "crowded";
-  const auto model = simulation::testing::PegInBlockModel();
+  const auto& model = simulation::testing::PegInBlockModel();
   const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
   session::SessionRecorder sink(recorder->get(), *model);
   haptics::TickOutput tick;
