@@ -14,6 +14,7 @@
 #include "assembly/run_assembly.h"
 #include "assembly/run_disassembly.h"
 #include "assembly/stepped_run.h"
+#include "base/error_name.h"
 #include "exchange/mjcf.h"
 #include "exchange/urdf.h"
 #include "exchange/usda.h"

@@ -1,4 +1,4 @@
-"""Types of the compiled part of the package."""
+"""Types of the compiled part of the package; its docstrings are in the module itself."""
 
 from os import PathLike
 from typing import Any, Callable, Mapping, Optional, Sequence
@@ -16,8 +16,6 @@ Progress = Optional[Callable[[str, float], None]]
 File = str | PathLike[str]
 
 class Product:
-    """A CAD file that is open: parts, where they are, and the mates that were found."""
-
     diagnostics: list[Diagnostic]
     @property
     def name(self) -> str: ...
@@ -31,91 +29,52 @@ class Product:
     def occurrences(self) -> list[Occurrence]: ...
     @property
     def mates(self) -> list[Mate]: ...
-    def features(self, part: int) -> list[Feature]:
-        """Holes, shafts, planes, cones and spheres of a part."""
-    def vertices(self, part: int) -> NDArray[np.float64]:
-        """n x 3, in the part's frame [m]."""
-    def triangles(self, part: int) -> NDArray[np.uint32]:
-        """n x 3 indices into vertices, outward; a view that keeps the product alive."""
-    def export_files(self, format: str, name: str) -> dict[str, bytes]:
-        """Files of an export ("mjcf", "urdf" or "usda") by their paths; hvas.export writes them."""
+    def features(self, part: int) -> list[Feature]: ...
+    def vertices(self, part: int) -> NDArray[np.float64]: ...
+    def triangles(self, part: int) -> NDArray[np.uint32]: ...
+    def export_files(self, format: str, name: str) -> dict[str, bytes]: ...
 
 class Model:
-    """A product that is prepared: immutable, and shared by all runs."""
-
     @property
     def steps(self) -> list[Step]: ...
     @property
-    def gaps(self) -> dict[str, str]:
-        """Reasons of the parts that no step brings in, by path."""
+    def gaps(self) -> dict[str, str]: ...
     @property
     def seed(self) -> int: ...
-    def with_seed(self, seed: int) -> Model:
-        """The same model with other sizes of its fits."""
-    def plan(self, orders: int = 5, before: Sequence[tuple[str, str]] = (), weights: Mapping[str, float] = {}) -> list[Order]:
-        """Orders of assembly of low cost. Weights: turn, direction_change, tool_change, loose, cramped, reach, force, hand_time."""
+    def with_seed(self, seed: int) -> Model: ...
+    def with_friction(self, friction: float) -> Model: ...
+    def plan(self, orders: int = 5, before: Sequence[tuple[str, str]] = (), weights: Mapping[str, float] = {}) -> list[Order]: ...
     def assemble(self, seed: int = 1, devices: Sequence[str] = ("",), condition: str = "hybrid", realtime: bool = False,
                  limit_s: float = 0.0, record: File = "", replace: bool = False,
-                 on_part: Optional[Callable[[PartResult], None]] = None) -> Outcome:
-        """Has a simulated person, or the user of a device, put every part in; in virtual time unless realtime."""
+                 on_part: Optional[Callable[[PartResult], None]] = None) -> Outcome: ...
 
 class Run:
-    """One step of the order, tick by tick, with a hand that the caller leads. The part is in the hand from the beginning.
-
-    Args of Run: start is the part's pose when it is taken (None: as it lies on the table); condition is "hybrid",
-    "collision" or "constraint"; stiffness [N/m], damping [N s/m], turn_stiffness [N m/rad] and turn_damping [N m s/rad]
-    are the arm's.
-    """
-
     def __init__(self, model: Model, step: int = 1, start: Optional[Sequence[float]] = None, condition: str = "hybrid",
                  contact_in_holes: bool = False, stiffness: float = 400.0, damping: float = 25.0, turn_stiffness: float = 6.0,
                  turn_damping: float = 0.2, rate_hz: float = 1000.0) -> None: ...
     def step(self, pose: Optional[Sequence[float]] = None, force: Optional[Sequence[float]] = None, ticks: int = 1,
-             grip: bool = True) -> NDArray[Any]:
-        """Runs ticks, without the interpreter's lock.
-
-        Args:
-            pose: Where the hand leads the part to; None: as before.
-            force: Of the arm besides its spring, in the world [N]; None: none.
-            ticks: 1 to 1,000,000.
-            grip: False lets go.
-
-        Returns:
-            A structured array with a row for each tick, a view: the next call writes over it, so copy what is to stay.
-            Fields: t_s, X_WH (hand), X_WB (part), F_felt_W and F_true_W (force, then torque), p_WC and f_C_W (the contact
-            that presses hardest), deepest, insertion, axial_true, offset, tilt, contacts, state (index into hvas.STATES).
-        """
+             grip: bool = True) -> NDArray[Any]: ...
     @property
-    def rows(self) -> NDArray[Any]:
-        """What the last step returned."""
+    def rows(self) -> NDArray[Any]: ...
     @property
     def seated(self) -> bool: ...
     @property
-    def t(self) -> float:
-        """Session time at the beginning of the last tick [s]."""
+    def t(self) -> float: ...
     @property
-    def pose(self) -> NDArray[np.float64]:
-        """Of the part."""
+    def pose(self) -> NDArray[np.float64]: ...
     @property
-    def led(self) -> Pose:
-        """Where the part would be if it hung in the hand without giving way."""
+    def led(self) -> Pose: ...
     @property
-    def force(self) -> NDArray[np.float64]:
-        """Force and torque that the hand is given [N, N m]."""
+    def force(self) -> NDArray[np.float64]: ...
     @property
     def goal(self) -> Pose: ...
     @property
-    def poses(self) -> list[Pose]:
-        """Of all parts, by the ids of their occurrences."""
-    def picture(self, width: int = 320, height: int = 240, to_eye: tuple[float, float, float] = ...) -> NDArray[np.uint8]:
-        """Height x width x 4 (red, green, blue, opacity): what is in its place and in the hand, drawn without a screen."""
+    def poses(self) -> list[Pose]: ...
+    def picture(self, width: int = 320, height: int = 240, to_eye: tuple[float, float, float] = ...) -> NDArray[np.uint8]: ...
     @property
-    def mass(self) -> float:
-        """Of what is in the hand [kg]."""
+    def mass(self) -> float: ...
 
 class Record:
-    """A recorded session."""
-
     def __init__(self, file: File) -> None: ...
     @property
     def meta(self) -> dict[str, str]: ...
@@ -123,13 +82,10 @@ class Record:
     def complete(self) -> bool: ...
     @property
     def tick_count(self) -> int: ...
-    def ticks(self, every: int = 1) -> dict[str, NDArray[np.float64]]:
-        """All numbers of all ticks, or of every so many-th of each hand, by the name of the column, which ends with its unit."""
+    def ticks(self, every: int = 1) -> dict[str, NDArray[np.float64]]: ...
     def events(self) -> list[Event]: ...
-    def verify(self) -> str:
-        """Reads everything against its checksums; the digest."""
-    def replay(self, progress: Progress = None) -> ReplayReport:
-        """Runs every tick again from what is recorded, and compares it bit for bit."""
+    def verify(self) -> str: ...
+    def replay(self, progress: Progress = None) -> ReplayReport: ...
 
 def open_product(file: File, fits: Sequence[str], unit: Optional[float], encoding: str, apart: Sequence[str],
                  rigid: Sequence[str], cache: bool, time_limit: float, progress: Progress) -> Product: ...

@@ -146,6 +146,7 @@ class Insertion(Base):
         offset: The start is beside the way by up to so much [m].
         tilt: The start is turned by up to so much [rad].
         contact_in_holes: A shaft with play touches its hole: it can tilt, jam and wedge.
+        friction: Coulomb coefficient of all contacts, or two between which each episode draws one; None: the materials'.
         clear: How far before the place where it engages the part begins [m].
         ticks: Haptic ticks in a step of the environment.
         picture: Width and height of a picture drawn without a screen; then an observation is a dictionary of the
@@ -155,13 +156,14 @@ class Insertion(Base):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
     most_turn = 0.1  # The hand is turned no further ahead of where it is [rad]: 0.6 N m.
 
-    def __init__(self, model, step=1, *, mode="pose", condition="hybrid", contact_in_holes=True, seeds_fits=True,
+    def __init__(self, model, step=1, *, mode="pose", condition="hybrid", contact_in_holes=True, seeds_fits=True, friction=None,
                  offset=1e-3, tilt=0.01, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, force=20.0, ticks=20, limit_s=20.0,
                  picture=None, render_mode=None):
         if mode not in ("pose", "wrench"):
             raise ValueError("mode is 'pose' or 'wrench'")
         self.model, self.mode, self.condition = model, mode, condition
         self.contact_in_holes, self.seeds_fits = contact_in_holes, seeds_fits
+        self.friction = friction
         self.offset, self.tilt, self.clear = offset, tilt, clear
         self.reach, self.turn, self.lead, self.force = reach, turn, lead, force
         self.ticks, self.limit_s = ticks, limit_s
@@ -183,6 +185,8 @@ class Insertion(Base):
         model = self.model
         if self.seeds_fits:
             model = model.with_seed(int(self.np_random.integers(1, 2**31)))
+        if self.friction is not None:
+            model = model.with_friction(float(self.np_random.uniform(*np.broadcast_to(self.friction, 2))))
         beside = self.np_random.uniform(-1, 1, 3)
         beside -= (beside @ self._out) * self._out
         position = self._way * self._out + self.offset * beside / max(1.0, np.linalg.norm(beside))

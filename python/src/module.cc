@@ -1,34 +1,10 @@
 #include "bindings.h"
 
 namespace hvas::python {
-namespace {
-
-const char* NameOf(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kNotFound:
-      return "not-found";
-    case ErrorCode::kUnreadable:
-      return "unreadable";
-    case ErrorCode::kUnsupported:
-      return "unsupported";
-    case ErrorCode::kInvalid:
-      return "invalid";
-    case ErrorCode::kOutOfResource:
-      return "out-of-resource";
-    case ErrorCode::kCancelled:
-      return "cancelled";
-    case ErrorCode::kInternal:
-      break;
-  }
-  return "internal";
-}
-
-}  // namespace
-
 void Throw(const Error& error) {
   ThrowInterrupt();
   const py::object type = py::module_::import("hvas.types").attr("Error");
-  const py::object value = type(NameOf(error.code), error.message, error.where, error.remedy);
+  const py::object value = type(hvas::NameOf(error.code), error.message, error.where, error.remedy);
   PyErr_SetObject(type.ptr(), value.ptr());
   throw py::error_already_set();
 }

@@ -151,7 +151,9 @@ std::shared_ptr<Product> Open(const std::filesystem::path& file,
 }  // namespace
 
 void DefineProduct(py::module_* module) {
-  py::class_<Product, std::shared_ptr<Product>>(*module, "Product", py::dynamic_attr())
+  py::class_<Product, std::shared_ptr<Product>>(
+      *module, "Product", py::dynamic_attr(),
+      "A CAD file that is open: parts, where they are, and the mates that were found.")
       .def_readonly("name", &Product::name)
       .def_readonly("source", &Product::source)
       .def_property_readonly("mass", &Product::mass)
@@ -177,10 +179,14 @@ void DefineProduct(py::module_* module) {
             return ListOf(product.parts.at(part).features,
                           [](const auto& feature) { return Describe(feature); });
           },
-          py::arg("part"))
-      .def("vertices", &Vertices, py::arg("part"))
-      .def("triangles", &Triangles, py::arg("part"))
-      .def("export_files", &Export, py::arg("format"), py::arg("name"))
+          py::arg("part"), "Holes, shafts, planes, cones and spheres of a part.")
+      .def("vertices", &Vertices, py::arg("part"), "Array of n x 3 in the part's frame [m].")
+      .def("triangles", &Triangles, py::arg("part"),
+           "Array of n x 3 indices into vertices, outward: a view that keeps the product alive.")
+      .def(
+          "export_files", &Export, py::arg("format"), py::arg("name"),
+          "Files of an export ('mjcf', 'xml', 'urdf' or 'usda') by their paths; hvas.export writes "
+          "them.")
       .def("__repr__", [](const Product& product) {
         return "<hvas.Product " + product.source + ": " +
                std::to_string(product.occurrences.size()) + " parts, " +

@@ -104,15 +104,20 @@ class PythonRecord {
 }  // namespace
 
 void DefineRecord(py::module_* module) {
-  py::class_<PythonRecord>(*module, "Record")
+  py::class_<PythonRecord>(*module, "Record", "A recorded session.")
       .def(py::init<const std::filesystem::path&>(), py::arg("file"))
       .def_property_readonly("meta", &PythonRecord::meta)
       .def_property_readonly("complete", &PythonRecord::is_complete)
       .def_property_readonly("tick_count", &PythonRecord::tick_count)
-      .def("ticks", &PythonRecord::Ticks, py::arg("every") = 1)
-      .def("events", &PythonRecord::Events)
-      .def("verify", &PythonRecord::Verify)
-      .def("replay", &PythonRecord::Replay, py::arg("progress") = py::none());
+      .def(
+          "ticks", &PythonRecord::Ticks, py::arg("every") = 1,
+          "Arrays of all numbers of all ticks, or of every so many-th of each hand, by the name of "
+          "the column, which ends with its unit.")
+      .def("events", &PythonRecord::Events, "What happened: a list of hvas.types.Event.")
+      .def("verify", &PythonRecord::Verify,
+           "Reads everything against its checksums, and gives the digest.")
+      .def("replay", &PythonRecord::Replay, py::arg("progress") = py::none(),
+           "Runs every tick again from what is recorded, and compares it bit for bit.");
 }
 
 }  // namespace hvas::python

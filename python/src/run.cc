@@ -105,6 +105,32 @@ std::unique_ptr<ModelHandle> DrawSizes(const ModelHandle& handle, std::uint64_t 
   return drawn;
 }
 
+std::unique_ptr<ModelHandle> StateFriction(const ModelHandle& handle, double friction) {
+  constexpr double kMost = 2;  // As a side file may state it.
+  if (!(friction >= 0 && friction <= kMost)) {
+    throw py::value_error("friction is a coefficient of 0 to 2");
+  }
+  const auto product = std::make_shared<product::Product>(*handle.model->product);
+  const std::size_t count = product->occurrences.size();
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = a + 1; b < count; ++b) {
+      product->contact_pairs.push_back(
+          {product::OccurrenceId(a), product::OccurrenceId(b), std::nullopt, friction});
+    }
+  }
+  for (product::Mate& mate : product->mates) {
+    mate.conditions.friction = friction;
+  }
+  Model model = *handle.model;
+  model.product = product;
+  auto stated = std::make_unique<ModelHandle>();
+  Diagnostics found;
+  // The same sizes, in fits with the other friction.
+  stated->model = simulation::DrawSizes(model, model.seed, model.pairs, &found);
+  stated->diagnostics = found.items();
+  return stated;
+}
+
 py::list Plan(const ModelHandle& handle, std::size_t orders,
               const std::vector<std::pair<std::string, std::string>>& before,
               const std::map<std::string, double>& weights) {
@@ -322,25 +348,45 @@ void DefineRun(py::module_* module) {
   PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
                        insertion, axial_true, offset, tilt, contacts, state);
   const simulation::PersonOptions arm;
-  py::class_<ModelHandle>(*module, "Model")
-      .def_property_readonly("steps", &ListSteps)
-      .def_property_readonly("gaps", &ListGaps)
+  py::class_<ModelHandle>(*module, "Model",
+                          "A product that is prepared: immutable, and shared by all runs.")
+      .def_property_readonly("steps", &ListSteps, "The order of assembly.")
+      .def_property_readonly("gaps", &ListGaps,
+                             "Reasons of the parts that no step brings in, by path.")
       .def_property_readonly("seed", [](const ModelHandle& handle) { return handle.model->seed; })
-      .def("with_seed", &DrawSizes, py::arg("seed"))
+      .def("with_seed", &DrawSizes, py::arg("seed"), "The same model with other sizes of its fits.")
+      .def("with_friction", &StateFriction, py::arg("friction"),
+           "The same model with this Coulomb coefficient, 0 to 2, in all contacts and fits.")
       .def("plan", &Plan, py::arg("orders") = 5,
            py::arg("before") = std::vector<std::pair<std::string, std::string>>(),
-           py::arg("weights") = std::map<std::string, double>())
+           py::arg("weights") = std::map<std::string, double>(),
+           "Orders of assembly of low cost. Weights: turn, direction_change, tool_change, loose, "
+           "cramped, reach, force, hand_time.")
       .def("assemble", &Assemble, py::arg("seed") = 1,
            py::arg("devices") = std::vector<std::string>{""}, py::arg("condition") = "hybrid",
            py::arg("realtime") = false, py::arg("limit_s") = 0.0, py::arg("record") = "",
-           py::arg("replace") = false, py::arg("on_part") = py::none())
+           py::arg("replace") = false, py::arg("on_part") = py::none(),
+           "Has a simulated person, or the user of a device, put every part in; in virtual time "
+           "unless realtime. on_part is called with each hvas.types.PartResult.")
       .def("__repr__", [](const ModelHandle& handle) {
         return "<hvas.Model " + handle.model->product->source + ": " +
                std::to_string(handle.model->sequence.steps.size()) + " steps>";
       });
   module->def("prepare", &Prepare, py::arg("product"), py::arg("seed"), py::arg("base"),
               py::arg("first_parts"), py::arg("cache"), py::arg("progress"));
-  py::class_<PythonRun>(*module, "Run")
+  py::class_<PythonRun>(
+      *module, "Run",
+      "One step of the order, tick by tick, with a hand that the caller leads. The part is in the "
+      "hand from the beginning.\n\n"
+      "Args:\n"
+      "    model: As hvas.prepare gives it.\n"
+      "    step: Index of a step that inserts a part.\n"
+      "    start: Pose of the part when it is taken; None: where it lies on the table.\n"
+      "    condition: 'hybrid', 'collision' (contact only) or 'constraint' (mates only).\n"
+      "    contact_in_holes: A shaft with play touches its hole: it tilts, jams and wedges.\n"
+      "    stiffness, damping, turn_stiffness, turn_damping: Of the arm [N/m, N s/m, N m/rad, N m "
+      "s/rad].\n"
+      "    rate_hz: Of the haptic tick, 1000 to 8000.")
       .def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
                     double, double, double, double, double>(),
            py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
@@ -354,10 +400,27 @@ void DefineRun(py::module_* module) {
              std::size_t ticks,
              bool grip) { return PythonRun::Step(self, pose, force, ticks, grip); },
           py::arg("pose") = py::none(), py::arg("force") = py::none(), py::arg("ticks") = 1,
-          py::arg("grip") = true)
-      .def_property_readonly("rows", [](const py::object& self) { return PythonRun::View(self); })
+          py::arg("grip") = true,
+          "Runs ticks, without the interpreter's lock.\n\n"
+          "Args:\n"
+          "    pose: Where the hand leads the part to; None: as before.\n"
+          "    force: Of the arm besides its spring, in the world [N]; None: none.\n"
+          "    ticks: 1 to 1,000,000.\n"
+          "    grip: False lets go.\n\n"
+          "Returns:\n"
+          "    A structured array with a row for each tick, a view: the next call writes over it, "
+          "so "
+          "copy what is to stay. Fields: t_s, X_WH (hand), X_WB (part), F_felt_W and F_true_W "
+          "(force, "
+          "then torque), p_WC and f_C_W (the contact that presses hardest), deepest, insertion, "
+          "axial_true, offset, tilt, contacts, state (index into hvas.STATES).")
+      .def_property_readonly(
+          "rows", [](const py::object& self) { return PythonRun::View(self); },
+          "What the last step returned.")
       .def_property_readonly("seated", [](const PythonRun& run) { return run.run().is_seated(); })
-      .def_property_readonly("t", [](const PythonRun& run) { return run.run().last().t_s; })
+      .def_property_readonly(
+          "t", [](const PythonRun& run) { return run.run().last().t_s; },
+          "Session time at the beginning of the last tick [s].")
       .def_property_readonly("pose",
                              [](const PythonRun& run) {
                                const TickRow& row = run.run().last();
@@ -367,7 +430,8 @@ void DefineRun(py::module_* module) {
           "led", [](const PythonRun& run) { return ToTuple(run.HandPose() * run.run().X_HB()); })
       .def_property_readonly(
           "force",
-          [](const PythonRun& run) { return py::array_t<double>(6, run.run().last().F_felt_W); })
+          [](const PythonRun& run) { return py::array_t<double>(6, run.run().last().F_felt_W); },
+          "Force and torque that the hand is given [N, N m].")
       .def_property_readonly("goal", [](const PythonRun& run) { return ToTuple(run.run().goal()); })
       .def_property_readonly("poses",
                              [](const PythonRun& run) {
@@ -383,7 +447,10 @@ void DefineRun(py::module_* module) {
             return Draw(run.run(), width, height, to_eye);
           },
           py::arg("width") = 320, py::arg("height") = 240,
-          py::arg("to_eye") = std::array<double, 3>{0.5, -0.7, 0.5})
+          py::arg("to_eye") = std::array<double, 3>{0.5, -0.7, 0.5},
+          "Array of height x width x 4 (red, green, blue, opacity): what is in its place and in "
+          "the "
+          "hand, drawn without a screen.")
       .def_property_readonly("mass", [](const PythonRun& run) {
         return simulation::CombineMass(run.model(), run.run().step()).mass;
       });

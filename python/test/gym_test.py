@@ -69,6 +69,23 @@ class PegInHole(unittest.TestCase):
                 break
         self.assertTrue(terminated)
 
+    def test_friction_is_felt_along_a_bore(self):
+        def drag(friction):
+            environment = gym.Insertion(self.environment.model, seeds_fits=False, friction=friction, offset=0, tilt=0)
+            observation, _ = environment.reset(seed=1)
+            felt = []
+            for step in range(100):  # Into the bore, then pressed against its wall on the way.
+                action = [0.5 if 30 < step < 45 else 0, 0, -0.4, 0, 0, 0]
+                observation, *_ = environment.step(action)
+                if step > 60:
+                    felt.append(observation[8] - (-environment._load[2]))
+            return np.mean(felt)  # Of the force along the axis, beyond the load.
+
+        low, high = drag(0.05), drag(0.4)
+        self.assertGreater(high, low + 0.2)
+        with self.assertRaises(ValueError):
+            self.environment.model.with_friction(-1)
+
     def test_pictures_show_the_part_come_nearer(self):
         environment = gym.Insertion(self.environment.model, seeds_fits=False, picture=(64, 48), render_mode="rgb_array")
         observation, _ = environment.reset(seed=1)

@@ -1,3 +1,4 @@
+import ast
 import pathlib
 import subprocess
 import sys
@@ -7,7 +8,24 @@ import unittest
 import numpy as np
 
 import hvas
-from support import PRODUCTS
+from support import PRODUCTS, SOURCES
+
+
+class Documentation(unittest.TestCase):
+    def test_the_stubs_name_what_there_is_and_all_of_it(self):
+        stubs = ast.parse((SOURCES / "python/hvas/_hvas.pyi").read_text())
+        for node in stubs.body:
+            if isinstance(node, ast.FunctionDef):
+                self.assertTrue(callable(getattr(hvas._hvas, node.name)), node.name)
+            elif isinstance(node, ast.ClassDef):
+                listed = {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__init__"}
+                there = {name for name in dir(getattr(hvas._hvas, node.name)) if not name.startswith("_")}
+                self.assertEqual(listed, there, node.name)
+
+    def test_everything_that_is_called_says_what_it_does(self):
+        for name in hvas.__all__:
+            if name not in ("STATES", "__version__", "fits"):
+                self.assertTrue(getattr(hvas, name).__doc__, name)
 
 
 class Open(unittest.TestCase):

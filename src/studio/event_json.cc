@@ -1,31 +1,12 @@
 #include "studio/event_json.h"
 
+#include "base/error_name.h"
 #include "base/units.h"
 
 namespace hvas::studio {
 namespace {
 
 using simulation::SimulationEvent;
-
-const char* CodeOf(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kNotFound:
-      return "not-found";
-    case ErrorCode::kUnreadable:
-      return "unreadable";
-    case ErrorCode::kUnsupported:
-      return "unsupported";
-    case ErrorCode::kInvalid:
-      return "invalid";
-    case ErrorCode::kOutOfResource:
-      return "out-of-resource";
-    case ErrorCode::kCancelled:
-      return "cancelled";
-    case ErrorCode::kInternal:
-      return "internal";
-  }
-  return "internal";
-}
 
 Json MetricsOf(const SimulationEvent& event) {
   const simulation::HoldMetrics& metrics = event.metrics;
@@ -66,7 +47,7 @@ const char* ToString(simulation::Placement placement) {
 }
 
 Json ToJson(const Error& error) {
-  return {{"code", CodeOf(error.code)},
+  return {{"code", NameOf(error.code)},
           {"message", error.message},
           {"where", error.where},
           {"remedy", error.remedy}};
