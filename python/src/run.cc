@@ -3,6 +3,8 @@
 #include <cmath>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "bindings.h"
 #include "evidence/picture.h"
 
@@ -153,7 +155,7 @@ py::list Plan(const ModelHandle& handle, std::size_t orders,
       for (const auto& [each, unused] : known) {
         names.append(names.empty() ? "" : ", ").append(each);
       }
-      throw py::value_error("no weight is called '" + name + "'; there are " + names);
+      throw py::value_error(fmt::format("no weight is called '{}'; there are {}", name, names));
     }
     *weight->second = value;
   }
