@@ -1,5 +1,6 @@
-#include <cstdlib>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "bindings.h"
 
@@ -96,15 +97,26 @@ py::dict Export(const Product& product, const std::string& format, const std::st
   if (product.occurrences.empty()) {
     throw py::value_error("there is no part to export");
   }
-  const auto files = [&]() -> exchange::ExportedFiles {
+  exchange::ExportedProduct exported;
+  exchange::ExportedFiles files;
+  {
     const py::gil_scoped_release unlocked;
-    const exchange::ExportedProduct exported = exchange::MakeExported(product);
+    exported = exchange::MakeExported(product);
     if (format == "urdf") {
-      return exchange::MakeUrdf(exported, name);
+      files = exchange::MakeUrdf(exported, name);
+    } else {
+      files[fmt::format("{}.{}", name, format)] =
+          format == "usda" ? exchange::MakeUsda(exported) : exchange::MakeMjcf(exported);
     }
-    return {{name + "." + format,
-             format == "usda" ? exchange::MakeUsda(exported) : exchange::MakeMjcf(exported)}};
-  }();
+  }
+  for (const exchange::ExportedBody& body : exported.bodies) {
+    if (body.form.is_hull_only) {
+      py::module_::import("warnings")
+          .attr("warn")(fmt::format(
+              "{}: its surface has too many triangles; it is met as its hull, with holes closed",
+              product.occurrences[body.occurrence.index()].path));
+    }
+  }
   py::dict contents;
   for (const auto& [path, bytes] : files) {
     contents[py::str(path)] = py::bytes(bytes);

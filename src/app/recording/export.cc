@@ -243,9 +243,7 @@ int RunExport(const ExportOptions& options) {
 
 void AddExport(CLI::App* app, int* status) {
   CLI::App* command = app->add_subcommand(
-      "export",
-      "Export a CAD file as .glb, .json, .step, .mjcf, .urdf or .usda, or a record as "
-      ".csv, .json, .h5, .mcap or .glb");
+      "export", "Export a CAD file for viewers and simulators, or a record as a table");
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->load.file, "CAD file or record")->required();
   command->add_option("-o,--output", options->output, "File to write")->required();
