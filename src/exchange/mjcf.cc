@@ -18,11 +18,9 @@ std::string JoinVertices(const std::vector<Vec3>& vertices) {
   return text;
 }
 
-// Meshes are the parts', in their frames; pieces of collision are named after the first of the
-// part's bodies, and shared by the others.
-std::string PieceName(const Product& product, const ExportedBody& body, std::size_t piece) {
-  return fmt::format("part{}_piece{}", product.occurrences[body.occurrence.index()].part.index(),
-                     piece);
+// Pieces are a part's, in its frame: all of its bodies share them.
+std::string PieceName(const Part& part, std::size_t piece) {
+  return fmt::format("part{}_piece{}", part.id.index(), piece);
 }
 
 std::string WriteAssets(const ExportedProduct& exported) {
@@ -44,7 +42,7 @@ std::string WriteAssets(const ExportedProduct& exported) {
                           part.id.index(), JoinVertices(part.display_mesh.vertices), faces);
     }
     for (std::size_t i = 0; i < body.form.pieces.size(); ++i) {
-      text += fmt::format("    <mesh name=\"{}\" vertex=\"{}\"/>\n", PieceName(product, body, i),
+      text += fmt::format("    <mesh name=\"{}\" vertex=\"{}\"/>\n", PieceName(part, i),
                           JoinVertices(body.form.pieces[i]));
     }
   }
@@ -84,8 +82,8 @@ std::string WriteBody(const ExportedProduct& exported, const ExportedBody& body)
         part.id.index(), part.color.r, part.color.g, part.color.b);
   }
   for (std::size_t i = 0; i < body.form.pieces.size(); ++i) {
-    text += fmt::format("      <geom class=\"met\" type=\"mesh\" mesh=\"{}\"/>\n",
-                        PieceName(product, body, i));
+    text +=
+        fmt::format("      <geom class=\"met\" type=\"mesh\" mesh=\"{}\"/>\n", PieceName(part, i));
   }
   for (const Cylinder& cylinder : body.form.cylinders) {
     text += fmt::format(
