@@ -51,6 +51,11 @@ class StatusTeller {
   LoopStatus now_;
 };
 
+/** Ticks from one step of physics to the next. */
+std::int64_t CountTicksPerPhysics(const Simulation& simulation) {
+  return std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / CalcPeriod(simulation));
+}
+
 void StepPhysics(const Execution& execution) {
   execution.simulation->physics().Step(execution.sink);
   if (execution.advance) {
@@ -101,8 +106,7 @@ Lockstep::Lockstep(const Execution& given) {
   execution.is_live = false;
   execution.sheds_load = false;  // what is left out would depend on the machine
   state_ = std::make_unique<State>(execution);
-  state_->ticks_per_physics =
-      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / CalcPeriod(*execution.simulation));
+  state_->ticks_per_physics = CountTicksPerPhysics(*execution.simulation);
   StepPhysics(state_->execution);
 }
 
@@ -139,8 +143,7 @@ ExecutionReport Lockstep::Finish() {
 
 ExecutionReport RunLockstep(const Execution& execution) {
   Lockstep lockstep(execution);
-  const std::int64_t ticks_per_physics =
-      std::max<std::int64_t>(1, Simulation::kPhysicsStepNs / CalcPeriod(*execution.simulation));
+  const std::int64_t ticks_per_physics = CountTicksPerPhysics(*execution.simulation);
   while (!lockstep.is_over()) {
     for (std::int64_t i = 0; i < ticks_per_physics; ++i) {
       lockstep.Tick();
