@@ -125,6 +125,8 @@ void WriteStep(const Drawing& drawing, const std::string& path);
 [[nodiscard]] Drawing DrawSnapJoint();
 /** A block with a blind bore of 20 mm, and a peg: what policies that learn begin with. */
 [[nodiscard]] Drawing DrawPegHole();
+/** A screw of 8 mm in a plate, and its nut. */
+[[nodiscard]] Drawing DrawNutBolt();
 
 namespace materials {
 inline const Material kSteel{"Steel C45", 7850};

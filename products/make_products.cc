@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
       hvas::products::WriteStep(tool, (tools / (tool.name + ".step")).string());
     }
     hvas::products::WriteProduct(hvas::products::DrawPegHole(), argv[1]);
+    hvas::products::WriteProduct(hvas::products::DrawNutBolt(), argv[1]);
   } catch (const Standard_Failure& failure) {
     fmt::print(stderr, "make_products: {}\n", failure.GetMessageString());
     return 1;

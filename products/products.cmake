@@ -4,7 +4,7 @@ find_path(HVAS_OCCT_INCLUDE Standard_Version.hxx PATH_SUFFIXES opencascade REQUI
 find_package(nlohmann_json REQUIRED)
 
 set_source_files_properties(frame_500.cc gear_pump.cc loose_twelve.cc PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # Products, the same steps.
-add_library(hvas_drawings STATIC bushing.cc frame_500.cc gear.cc gear_pump.cc gear_pump_parts.cc loose_twelve.cc peg_hole.cc relations.cc snap_joint.cc solid.cc tools.cc truth.cc write_step.cc)
+add_library(hvas_drawings STATIC bushing.cc frame_500.cc gear.cc gear_pump.cc gear_pump_parts.cc loose_twelve.cc nut_bolt.cc peg_hole.cc relations.cc snap_joint.cc solid.cc tools.cc truth.cc write_step.cc)
 target_include_directories(hvas_drawings PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(hvas_drawings SYSTEM PUBLIC ${HVAS_OCCT_INCLUDE})
 target_link_libraries(hvas_drawings PUBLIC hvas_settings fmt::fmt nlohmann_json::nlohmann_json

@@ -221,6 +221,10 @@ TEST(PegHole, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawPegHole());
 }
 
+TEST(NutBolt, VolumesByHandAndByKernelAgree) {
+  ExpectHandVolumes(DrawNutBolt());
+}
+
 TEST(SnapJoint, VolumesByHandAndByKernelAgree) {
   ExpectHandVolumes(DrawSnapJoint());
 }

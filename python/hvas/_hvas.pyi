@@ -50,8 +50,8 @@ class Model:
 
 class Run:
     def __init__(self, model: Model, step: int = 1, start: Optional[Sequence[float]] = None, condition: str = "hybrid",
-                 contact_in_holes: bool = False, stiffness: float = 400.0, damping: float = 25.0, turn_stiffness: float = 6.0,
-                 turn_damping: float = 0.2, rate_hz: float = 1000.0) -> None: ...
+                 contact_in_holes: bool = False, threads_turn: bool = False, stiffness: float = 400.0, damping: float = 25.0,
+                 turn_stiffness: float = 6.0, turn_damping: float = 0.2, rate_hz: float = 1000.0) -> None: ...
     def step(self, pose: Optional[Sequence[float]] = None, force: Optional[Sequence[float]] = None, ticks: int = 1,
              grip: bool = True) -> NDArray[Any]: ...
     @property

@@ -273,8 +273,9 @@ py::array Draw(const SteppedRun& run, int width, int height, const std::array<do
 class PythonRun {
  public:
   PythonRun(const ModelHandle& handle, std::size_t step, const py::object& start,
-            const std::string& condition, bool has_contact_in_holes, double stiffness,
-            double damping, double turn_stiffness, double turn_damping, double rate_hz)
+            const std::string& condition, bool has_contact_in_holes, bool turns_threads,
+            double stiffness, double damping, double turn_stiffness, double turn_damping,
+            double rate_hz)
       : model_(handle.model) {
     assembly::SteppedOptions options;
     options.step = step;
@@ -283,6 +284,7 @@ class PythonRun {
     }
     options.condition = ToCondition(condition);
     options.contact_in_holes = has_contact_in_holes;
+    options.threads_turn = turns_threads;
     options.arm.stiffness = stiffness;
     options.arm.damping = damping;
     options.arm.turn_stiffness = turn_stiffness;
@@ -348,7 +350,7 @@ class PythonRun {
 
 void DefineRun(py::module_* module) {
   PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
-                       insertion, axial_true, offset, tilt, contacts, state);
+                       insertion, axial_true, preload, offset, tilt, contacts, state);
   const simulation::PersonOptions arm;
   py::class_<ModelHandle>(*module, "Model",
                           "A product that is prepared: immutable, and shared by all runs.")
@@ -386,14 +388,15 @@ void DefineRun(py::module_* module) {
       "    start: Pose of the part when it is taken; None: where it lies on the table.\n"
       "    condition: 'hybrid', 'collision' (contact only) or 'constraint' (mates only).\n"
       "    contact_in_holes: A shaft with play touches its hole: it tilts, jams and wedges.\n"
+      "    threads_turn: Screws and nuts go in by turning, and are tightened.\n"
       "    stiffness, damping, turn_stiffness, turn_damping: Of the arm [N/m, N s/m, N m/rad, N m "
       "s/rad].\n"
       "    rate_hz: Of the haptic tick, 1000 to 8000.")
       .def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
-                    double, double, double, double, double>(),
+                    bool, double, double, double, double, double>(),
            py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
            py::arg("condition") = "hybrid", py::arg("contact_in_holes") = false,
-           py::arg("stiffness") = arm.stiffness, py::arg("damping") = arm.damping,
+           py::arg("threads_turn") = false,            py::arg("stiffness") = arm.stiffness, py::arg("damping") = arm.damping,
            py::arg("turn_stiffness") = arm.turn_stiffness,
            py::arg("turn_damping") = arm.turn_damping, py::arg("rate_hz") = 1000.0)
       .def(
@@ -415,7 +418,7 @@ void DefineRun(py::module_* module) {
           "copy what is to stay. Fields: t_s, X_WH (hand), X_WB (part), F_felt_W and F_true_W "
           "(force, "
           "then torque), p_WC and f_C_W (the contact that presses hardest), deepest, insertion, "
-          "axial_true, offset, tilt, contacts, state (index into hvas.STATES).")
+          "axial_true, preload, offset, tilt, contacts, state (index into hvas.STATES).")
       .def_property_readonly(
           "rows", [](const py::object& self) { return PythonRun::View(self); },
           "What the last step returned.")

@@ -49,6 +49,7 @@ TickRow MakeRow(std::int64_t t_ns, const haptics::TickOutput& out) noexcept {
   row.deepest = out.deepest;
   row.insertion = out.insertion_depth;
   row.axial_true = out.axial_true;
+  row.preload = out.preload;
   row.offset = out.axis.offset;
   row.tilt = out.axis.tilt;
   row.contacts = out.contact_count;
@@ -113,6 +114,7 @@ SteppedRun::SteppedRun(std::shared_ptr<const simulation::Model> model,
   haptics::TickOptions tick = MakePersonTick({0, options.rate_hz});
   tick.condition = options.condition;
   tick.guidance.contact_in_holes = options.contact_in_holes;
+  tick.guidance.threads_turn = options.threads_turn;
   simulation_ = session::MakeSimulation(model_, {tick});
   const std::vector<simulation::PartState> parts = ListBeginning();
   simulation_->Restore(parts);

@@ -26,6 +26,8 @@ struct SteppedOptions {
   haptics::Condition condition{haptics::Condition::kHybrid};
   /** A shaft with play touches its hole (GuidanceOptions::contact_in_holes). */
   bool contact_in_holes{false};
+  /** Threads go in by turning, and are tightened (GuidanceOptions::threads_turn). */
+  bool threads_turn{false};
   simulation::PersonOptions arm;  ///< Impedance of the arm; its other habits are not used.
   double rate_hz{1000};           ///< Rate of the haptic tick, 1000 to 8000 [Hz].
 };
@@ -43,6 +45,7 @@ struct TickRow {
   double deepest{0};         ///< Distance of the deepest contact, negative inside; infinite: none.
   double insertion{0};       ///< Depth of the shaft in its hole [m].
   double axial_true{0};      ///< Resistance of the fits along their axis [N].
+  double preload{0};         ///< Force in a screw or nut that is being tightened [N].
   double offset{0};          ///< Distance from the axis that guides the part [m]; 0: none does.
   double tilt{0};            ///< Angle to that axis [rad].
   std::int32_t contacts{0};  ///< Contacts that press.

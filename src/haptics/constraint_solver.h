@@ -28,11 +28,12 @@ class ConstraintSolver {
  public:
   // Rooms that are made once, so that a step allocates nothing: the held part, that of the
   // other hand, eight free bodies and two fasteners; twice the contacts of a query; their patches;
-  // two rows for each of two fits, one for each fastener and one for parts that give. Choices.
+  // two rows for each of two fits, one for each fastener, one for parts that give and three for a
+  // thread. Choices.
   static constexpr int kMaxBodies = 12;
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;
-  static constexpr int kMaxBoundedRows = 7;
+  static constexpr int kMaxBoundedRows = 10;
   static constexpr int kWorld = -1;  ///< Index of what does not move, in place of a body's.
 
   /** A body as it is before the step. */

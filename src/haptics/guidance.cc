@@ -21,6 +21,7 @@ void Guidance::Begin(const HeldPart& part) noexcept {
   }
   fit_rows_.Reset();
   giving_rows_.Reset(part.starts_in_place);
+  thread_rows_.Reset(part.starts_in_place);
 }
 
 void Guidance::Update(const DisplayedPart& displayed, const spatial::Pose& X_WT) noexcept {
@@ -37,6 +38,7 @@ EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, doub
     is_stuck_ = giving_rows_.holding_force() > weight;
   }
   guide_.AddSprings(*displayed.part, options_.guidance, solver);
+  const bool has_thread = AddThread(displayed, solver);
   if (options_.condition == Condition::kCollision || guide_.captured_count() == 0) {
     is_attracting_ = false;
     fit_rows_.Reset();
@@ -47,9 +49,9 @@ EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, doub
     fit_rows_.Reset();
     return {};
   }
-  // A tool has no place of its own to be attracted to, and a way that turns or bends does not lead
-  // straight to it.
-  const bool attracts = displayed.part->drives.empty() && !displayed.part->has_bent_way;
+  // A tool has no place of its own to be attracted to, and a way that turns or bends, as a
+  // thread's, does not lead straight to it.
+  const bool attracts = displayed.part->drives.empty() && !displayed.part->has_bent_way && !has_thread;
   const EnergyCredit credit =
       attracts ? AddAttraction(displayed, *axis, soft_start, solver) : EnergyCredit();
   if (guide_.is_aligned() && options_.renders_fits) {
@@ -112,6 +114,31 @@ void Guidance::AddFits(const DisplayedPart& displayed, const MateGeometry& axis,
   fit_rows_.Add(load, fit_axis_, solver);
 }
 
+bool Guidance::AddThread(const DisplayedPart& displayed, ConstraintSolver* solver) noexcept {
+  if (!options_.guidance.threads_turn || !options_.renders_fits ||
+      options_.condition == Condition::kCollision) {
+    return false;
+  }
+  const std::vector<HeldMate>& mates = displayed.part->mates;
+  const HeldMate* deepest = nullptr;
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < std::min(mates.size(), MateGuide::kMaxMates); ++i) {
+    if (mates[i].thread && guide_.is_captured(i) &&
+        (deepest == nullptr || guide_.geometry(i).depth > guide_.geometry(index).depth)) {
+      deepest = &mates[i];
+      index = i;
+    }
+  }
+  if (deepest == nullptr) {
+    thread_rows_.Reset(false);
+    return false;
+  }
+  thread_rows_.Add(displayed, *deepest, guide_.geometry(index), options_.contact, options_.dt,
+                   solver);
+  is_stuck_ = is_stuck_ || thread_rows_.is_in();
+  return true;
+}
+
 void Guidance::Finish(const ConstraintSolver& solver, TickOutput* out) noexcept {
   const FitForces forces = fit_rows_.Finish(solver);
   const GivingRows::Forces giving = giving_rows_.Finish(solver);
@@ -122,6 +149,10 @@ void Guidance::Finish(const ConstraintSolver& solver, TickOutput* out) noexcept 
   out->F_true_W.f += f;
   out->F_true_W.t +=
       fit_axis_.p_CmQ_W.cross(f) + (forces.torque_true - forces.torque_felt) * fit_axis_.out_W;
+  const ThreadForces thread = thread_rows_.Finish(solver);
+  out->F_true_W.t += (thread.torque_true - thread.torque_felt) * thread_rows_.out_W();
+  out->preload = thread.preload;
+  out->is_thread_crossed = thread_rows_.is_crossed();
   out->insertion_depth = guide_.insertion_depth();
 }
 

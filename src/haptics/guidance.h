@@ -5,6 +5,7 @@
 #include "haptics/giving_rows.h"
 #include "haptics/mate_guide.h"
 #include "haptics/options.h"
+#include "haptics/thread_rows.h"
 #include "haptics/tick_output.h"
 
 namespace hvas::haptics {
@@ -22,7 +23,8 @@ class Guidance {
   explicit Guidance(const TickOptions& options) noexcept
       : options_(options),
         fit_rows_(options.force_map, options.device),
-        giving_rows_(MakeForceMap(options.device)) {}
+        giving_rows_(MakeForceMap(options.device)),
+        thread_rows_(MakeTorqueMap(options.device)) {}
 
   void Begin(const HeldPart& part) noexcept;
 
@@ -47,7 +49,9 @@ class Guidance {
 
   [[nodiscard]] const MateGuide& mates() const noexcept { return guide_; }
 
-  /** The fits, or what gives, hold more than the part's weight. */
+  [[nodiscard]] const ThreadRows& thread() const noexcept { return thread_rows_; }
+
+  /** The fits, its thread or what gives hold more than the part's weight. */
   [[nodiscard]] bool is_stuck() const noexcept { return is_stuck_; }
 
  private:
@@ -56,11 +60,16 @@ class Guidance {
   void AddFits(const DisplayedPart& displayed, const MateGeometry& axis, double weight,
                ConstraintSolver* solver) noexcept;
 
+  /** Lets the part turn in its thread. False where it has none that is captured, or threads do not
+   turn. */
+  bool AddThread(const DisplayedPart& displayed, ConstraintSolver* solver) noexcept;
+
   const TickOptions& options_;
   MateGuide guide_;
   FitRows fit_rows_;
   FitAxis fit_axis_;
   GivingRows giving_rows_;
+  ThreadRows thread_rows_;
   bool is_stuck_{false};
   int captured_before_{0};
   bool is_attracting_{false};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "contact/scene.h"
@@ -25,6 +26,20 @@ struct MateFaces {
   std::vector<std::uint32_t> with_neighbours;
 };
 
+/** A threaded joint of the held part, as the hand feels it. */
+struct HeldThread {
+  double lead{0};            ///< Advance of a turn; negative: left-handed [m].
+  double play{0};            ///< Between the flanks, along the axis [m].
+  double pitch_diameter{0};  ///< d2 [m]
+  double friction{0};        ///< mu of the thread, and under the head.
+  double running_torque{0};  ///< Torque that it takes to turn it without load [N m].
+  double head_radius{0};     ///< Mean radius of the contact under the head, D_K / 2 [m].
+  /** Force along the axis for each metre that screw and clamped parts give together [N/m]; 0: there
+   is nothing to clamp. */
+  double stiffness{0};
+  double preload{0};  ///< F_M, tightened in its place [N].
+};
+
 /** A mate of the held part with a part that is already in its place. */
 struct HeldMate {
   product::MateId id;
@@ -38,6 +53,7 @@ struct HeldMate {
   bool has_shaft{true};  ///< Axis-hole: the held side is the shaft, not the hole.
   bool is_stop{false};   ///< A plane that ends the insertion, not one that guides it.
   std::shared_ptr<const fits::FitForce> fit;          ///< Null for planes and threads.
+  std::optional<HeldThread> thread;                   ///< Where its pitch is known.
   fits::FitKind fit_kind{fits::FitKind::kClearance};  ///< Says which factor of PaperFactors counts.
   contact::BodyId body;                               ///< The placed part in the scene.
   std::shared_ptr<const MateFaces> held_faces;

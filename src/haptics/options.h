@@ -76,6 +76,9 @@ struct GuidanceOptions {
   /** A shaft with play touches its hole where the two are: it tilts, jams and wedges. Without, its
    mate guides it in the hole as well, as in the papers. */
   bool contact_in_holes{false};
+  /** A threaded part goes in and comes out by turning, and is tightened. Without, it goes straight,
+   with the faces of the thread out of contact. */
+  bool threads_turn{false};
   /** X(9) goes on where a fit resists, as in paper X. Without it the fit takes over as it engages:
    what draws a part in holds it back on the way out. */
   bool attracts_in_fits{false};

@@ -18,6 +18,7 @@ void Apply(const PaperGuidance& guidance, TickOptions* tick) {
   }
   tick->guidance.attracts_in_fits = guidance.attracts_in_fits;
   tick->guidance.contact_in_holes = guidance.contact_in_holes;
+  tick->guidance.threads_turn = guidance.threads_turn;
 }
 
 }  // namespace hvas::haptics

@@ -33,6 +33,8 @@ struct PaperGuidance {
   /** A shaft with play touches its hole where the two are. Otherwise its mate holds it on the axis
    inside the hole, too, as in papers X and W. */
   bool contact_in_holes{false};
+  /** GuidanceOptions::threads_turn; neither paper has threads. */
+  bool threads_turn{false};
 };
 
 /** @param tick  Of the device that renders. The coupling gets no stiffer than it is already: that

@@ -71,6 +71,8 @@ struct TickOutput : ContactAccount {
   double insertion_depth{0};  ///< Depth of insertion l [m].
   double axial_true{0};       ///< Force of the fits on their axis; positive against going in [N].
   double axial_felt{0};
+  double preload{0};              ///< Force in a screw or nut that is being tightened [N].
+  bool is_thread_crossed{false};  ///< It came into its thread tilted, and sticks there.
   std::uint32_t gate_actions{0};
   WorkspaceMapping workspace;       ///< How the handle moved the hand.
   PassivityAccount energy;          ///< Energy of forces so far, where passivity is controlled.

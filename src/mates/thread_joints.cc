@@ -18,12 +18,8 @@ using product::Mate;
 using product::Part;
 using product::ThreadKind;
 
-// Property class 8.8 of ISO 898-1 up to M16: R_p0.2 [Pa]; a usual friction of lightly oiled steel.
+// Property class 8.8 of ISO 898-1 up to M16: R_p0.2 [Pa].
 constexpr double kYieldStress = 640e6;
-constexpr double kFriction = 0.12;
-// Mean diameter of the contact under a head, of the screw's diameter: 1.27 to 1.30 for ISO 4014 and
-// ISO 4762 with a medium hole.
-constexpr double kHeadContact = 1.28;
 
 bool IsSelfTappingByName(std::string_view name) {
   // ISO 1479 to 1483, 7049 to 7051 and their DIN predecessors are tapping screws.
@@ -81,7 +77,7 @@ ThreadJoint MakeJoint(const product::Product& product, const Mate& mate) {
     joint.pitch = joint.is_modelled ? joint.pitch : joint.thread->pitch;
     joint.hole = fits::ClassifyThreadHole(*joint.thread, 2 * mate.hole_radius);
     if (joint.kind == ThreadJointKind::kThreaded) {
-      joint.tightening = fits::CalcTightening(*joint.thread, kYieldStress, kFriction, kFriction,
+      joint.tightening = fits::CalcTightening(*joint.thread, kYieldStress, kThreadFriction, kThreadFriction,
                                               kHeadContact * joint.diameter);
     }
   }

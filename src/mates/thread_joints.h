@@ -8,6 +8,12 @@
 
 namespace hvas::mates {
 
+/** Friction in threads and under heads of lightly oiled steel: what tightening is reckoned with. */
+inline constexpr double kThreadFriction = 0.12;
+/** Mean diameter of the contact under a head, in diameters of the screw: 1.27 to 1.30 for ISO 4014
+ and ISO 4762 with a medium hole. */
+inline constexpr double kHeadContact = 1.28;
+
 /** How a threaded joint holds. */
 enum class ThreadJointKind {
   kThreaded,     ///< A screw in a nut or in a tapped hole.

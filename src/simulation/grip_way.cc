@@ -7,6 +7,11 @@
 #include "base/check.h"
 
 namespace hvas::simulation {
+namespace {
+
+constexpr double kTurningShare = 0.2;  // Of the travel: where less of it is distance, it turns. A choice.
+
+}  // namespace
 
 GripWay::GripWay(std::vector<spatial::Pose> X_WG, double radius)
     : X_WG_(std::move(X_WG)), radius_(radius) {
@@ -34,8 +39,11 @@ spatial::Pose GripWay::At(double travel) const noexcept {
   const std::size_t i = FindPiece(travel);
   const double span = travels_[i + 1] - travels_[i];
   const double s = span > 0 ? (travel - travels_[i]) / span : 0;  // Below 0: beyond the goal.
-  return {X_WG_[i].q().slerp(std::max(0.0, s), X_WG_[i + 1].q()),
-          X_WG_[i].p() + s * (X_WG_[i + 1].p() - X_WG_[i].p())};
+  const Vec3 move = X_WG_[i + 1].p() - X_WG_[i].p();
+  // What comes to its place by turning goes on turning there, as a screw that is tightened.
+  const bool is_turn = move.norm() < kTurningShare * span;
+  return {X_WG_[i].q().slerp(is_turn ? s : std::max(0.0, s), X_WG_[i + 1].q()),
+          X_WG_[i].p() + s * move};
 }
 
 spatial::Twist GripWay::RateAt(double travel) const noexcept {

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/units.h"
 #include "fits/paper_scales.h"
+#include "haptics/mate_guide.h"
 #include "mates/capture.h"
 #include "mates/prismatic_fits.h"
 #include "mates/resolve.h"
+#include "mates/thread_joints.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/tool_reach.h"
 
@@ -70,6 +73,43 @@ bool HoldsAside(const mates::MateConstraint& mate, const spatial::Pose& X_WB_pla
   constexpr double kTolerance = 0.1e-3;  // [m]: more than shapes drawn for each other differ by.
   const std::span<const mates::MateConstraint> one(&mate, 1);
   return mates::CalcResidual(one, X_WB_aside) < mates::CalcResidual(one, X_WB_place) + kTolerance;
+}
+
+/** A thread without anything to clamp. */
+haptics::HeldThread MakeHeldThread(const mates::ThreadJoint& joint) {
+  // Of a thread that no table has, as of metric ones.
+  fits::Thread thread;
+  thread.diameter = joint.diameter;
+  thread.pitch = joint.pitch;
+  if (joint.thread != nullptr) {
+    thread = *joint.thread;
+  }
+  haptics::HeldThread held;
+  held.lead = joint.is_left_handed ? -joint.pitch : joint.pitch;
+  held.play = fits::CalcMeanFlankPlay(thread);
+  held.pitch_diameter = thread.pitch_diameter();
+  held.friction = mates::kThreadFriction;
+  held.head_radius = 0.5 * mates::kHeadContact * joint.diameter;
+  return held;
+}
+
+/** From where the held part rests, by a plane that ends its way in, to the first turn of its thread
+ that is engaged; none where no plane does [m]. */
+std::optional<double> FindClampedLength(const haptics::HeldPart& held,
+                                        const haptics::HeldMate& thread) {
+  constexpr double kLeast = 0.5;  // Of the diameter: a head on the very hole, too, gives. A choice.
+  const haptics::MateGeometry in_place = haptics::CalcMateGeometry(thread, held.X_WB_goal);
+  std::optional<double> least;
+  for (const haptics::HeldMate& mate : held.mates) {
+    if (mate.is_stop) {
+      const double to_middle =
+          std::abs((in_place.p_WQ - mate.X_WM.p()).dot(in_place.way_W));
+      const double clamped =
+          std::max(to_middle - 0.5 * in_place.engaged, kLeast * 2 * thread.radius);
+      least = std::min(least.value_or(clamped), clamped);
+    }
+  }
+  return least;
 }
 
 std::shared_ptr<const haptics::MateFaces> WithoutNeighbours(const haptics::MateFaces& faces) {
@@ -133,6 +173,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
                          FindMissingPartner(step).is_valid();
   held->X_WB_goal =
       held->starts_in_place ? held->X_WB_start : CalcPlace(*held, GoalOf(step, body.X_WB_goal));
+  AddThreads(held.get());
   if (can_join && !IsWithinProduct(step.kind)) {
     AddTablePlaces(step, held.get());
   }
@@ -168,6 +209,7 @@ void HeldPartMaker::AddTablePlaces(const SequenceStep& step, haptics::HeldPart* 
     std::sort(all.begin() + 1, all.end());
     there->joined = GroupOf(all);
     AddMates(step, Placement::kLoose, &place.target, there.get());
+    AddThreads(there.get());
     if (place.starts_in_place && place.target.size() > 1) {
       held->left_behind = there->target;
     }
@@ -180,6 +222,21 @@ void HeldPartMaker::AddMates(const SequenceStep& step, Placement placement,
                              haptics::HeldPart* held) const {
   for (std::size_t member = 0; member <= step.members.size(); ++member) {
     AddMatesOf(step, member, placement, target, held);
+  }
+}
+
+void HeldPartMaker::AddThreads(haptics::HeldPart* held) const {
+  for (haptics::HeldMate& mate : held->mates) {
+    const mates::ThreadJoint* joint = model_.mates[mate.id.index()].thread.get();
+    if (joint == nullptr || joint->pitch <= 0) {
+      continue;
+    }
+    mate.thread = MakeHeldThread(*joint);
+    const std::optional<double> clamped = FindClampedLength(*held, mate);
+    if (clamped && joint->thread != nullptr && joint->tightening.preload > 0) {
+      mate.thread->stiffness = fits::CalcJointStiffness(*joint->thread, *clamped);
+      mate.thread->preload = joint->tightening.preload;
+    }
   }
 }
 

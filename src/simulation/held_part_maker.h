@@ -51,6 +51,8 @@ class HeldPartMaker {
                 const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
   void AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
                   const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
+  /** Threads of the mates that were added. */
+  void AddThreads(haptics::HeldPart* held) const;
   void AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held);
   /** The place that the mates have, near a wanted one. */
   [[nodiscard]] static spatial::Pose CalcPlace(const haptics::HeldPart& held,

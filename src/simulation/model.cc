@@ -471,6 +471,8 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
   };
   model->mates_of.resize(product->occurrences.size());
   const std::vector<mates::FastenerKind> fasteners = mates::ClassifyOccurrences(*product);
+  const std::vector<mates::ThreadJoint> joints = mates::FindThreadJoints(*product);
+  auto next_joint = joints.begin();
   for (const product::Mate& mate : product->mates) {
     ModelMate compiled;
     compiled.id = mate.id;
@@ -489,6 +491,9 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
     if (IsDrawnThread(mate) || !locking.empty()) {
       compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
       compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
+    }
+    if (next_joint != joints.end() && next_joint->mate == mate.id) {
+      compiled.thread = std::make_shared<const mates::ThreadJoint>(*next_joint++);
     }
     model->mates.push_back(std::move(compiled));
     if (!mates::IsContradicted(*product, mate)) {

@@ -17,6 +17,7 @@
 #include "fits/fit_force.h"
 #include "fits/pair_choice.h"
 #include "haptics/held_part.h"
+#include "mates/thread_joints.h"
 #include "product/drive_forms.h"
 #include "product/product.h"
 #include "simulation/sequence.h"
@@ -59,6 +60,8 @@ struct ModelMate {
   std::shared_ptr<const haptics::MateFaces> faces_a;
   std::shared_ptr<const haptics::MateFaces> faces_b;
   std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
+  /** Of the same mate; null where it has no thread. */
+  std::shared_ptr<const mates::ThreadJoint> thread;
 };
 
 struct Model;

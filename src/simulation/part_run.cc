@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "mates/mate_kind.h"
 #include "product/flexible.h"
+#include "simulation/thread_way.h"
 #include "simulation/turning_way.h"
 
 namespace hvas::simulation {
@@ -85,6 +86,15 @@ bool PartRun::HasNothingToMove(const SequenceStep& step) const {
          placement != PlacementBefore(step.kind);
 }
 
+sweep::Path PartRun::WayOf(const SequenceStep& step) {
+  const bool is_in_product =
+      step.kind == SequenceStep::Kind::kInsert || step.kind == SequenceStep::Kind::kRemove;
+  if (!step.way.empty() || !is_in_product || !simulation_->options().guidance.threads_turn) {
+    return step.way;
+  }
+  return MakeThreadWay(*physics().Describe(step), step.engage_distance);
+}
+
 PersonTask PartRun::MakeTask(const SequenceStep& step) {
   const Model& model = this->model();
   const Body& body = model.bodies[step.occurrence.index()];
@@ -103,9 +113,11 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) {
   task.starts_on_way = IsWithinProduct(step.kind);
   task.extraction_W = step.extraction_W;
   task.engage_distance = step.engage_distance;
-  if (!step.way.empty()) {
-    ways_.push_back(MakeGripWay(step.way, X_BG.p(), body.shape->box_B()));
+  const sweep::Path way = WayOf(step);
+  if (!way.empty()) {
+    ways_.push_back(MakeGripWay(way, X_BG.p(), body.shape->box_B()));
     task.way = &ways_.back();
+    task.is_threaded = step.way.empty();
     task.extraction_W = task.way->outward_W();
     task.engage_distance = task.way->length();
   }

@@ -62,6 +62,11 @@ class PhysicsSide {
    Parts that were not prepared go to their drawn place by their step of the sequence. */
   void Prepare(const SequenceStep& step, std::size_t hand = 0) { hands_[hand].prepared = step; }
 
+  /** What a hand would have in it in this step, with the parts where they are now. */
+  [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Describe(const SequenceStep& step) {
+    return maker_.Make(step, false);
+  }
+
   /** Asks HeldPartMaker for where the parts are now. */
   [[nodiscard]] product::OccurrenceId FindMissingPartner(const SequenceStep& step) const {
     return maker_.FindMissingPartner(step);

@@ -27,6 +27,7 @@ struct PersonTask {
   double engage_distance{0};         ///< [m] from the goal, where insertion begins.
   /** The way of the grip where it is not straight; outlives the task. Null: straight. */
   const GripWay* way{nullptr};
+  bool is_threaded{false};  ///< The way is that of its thread: it is turned along it, and no slot found.
   /** Only planes guide it: what they leave free the eye has to find. */
   bool is_guided_by_planes{false};
   /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;

@@ -42,6 +42,7 @@ constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kEyePitch = 0.25;       // Of the error of a close look, the same by eye
 constexpr double kLeadOnWay = 1e-3;  // [m] that the hand goes before the part on a way that bends
+constexpr double kTwist = 0.1;       // [rad] that the hand turns a screw ahead of where it is
 constexpr double kNearer = 0.05e-3;  // [m] of travel that count as coming on
 constexpr double kNotNearer = 2;     // [s] until whoever sees the way tries anew
 constexpr double kLeadWhenStuck = 2e-3;  // [m/s] more of it while the part is stuck
@@ -266,7 +267,7 @@ bool SimulatedPerson::IsLedByEye() const noexcept {
 }
 
 bool SimulatedPerson::HasSlotToFind() const noexcept {
-  return is_guided_ && task_.way != nullptr;
+  return is_guided_ && task_.way != nullptr && !task_.is_threaded;
 }
 
 void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept {
@@ -385,6 +386,11 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
   // Where the way turns, the wrist is what is stiff. Around a corner the hand does not pull before
   // the part is there, unless it is stuck.
   const spatial::Twist rate = task_.way->RateAt(travel_);
+  if (task_.is_threaded && rate.w.norm() > rate.v.norm() / kTwist) {
+    // What its own arm takes to turn is no twist.
+    return kTwist / rate.w.norm() +
+           options_.turn_damping / options_.turn_stiffness * options_.insert_speed;
+  }
   const double moving = rate.v.squaredNorm();
   const double turning = rate.w.squaredNorm();
   const double stiffness = options_.stiffness * moving + options_.turn_stiffness * turning;

@@ -9,7 +9,6 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kLastPiece = 10e-3;  // [m]; as long as the hand needs to see where it leads.
 constexpr double kStep = 0.5e-3;  // [m] between poses; a chord of an arc is good to 2 um: choices.
 
 /** Whether a box may go on along an axis for ever. */

@@ -10,6 +10,10 @@
 
 namespace hvas::simulation {
 
+/** Length of the straight last piece of a way that turns [m]; as long as the hand needs to see where
+ it leads. */
+inline constexpr double kLastPiece = 10e-3;
+
 /** The step of a part that comes out along a path; its way goes on straight after the last pose, in
  the direction of an axis of the world that leads past all others, and is divided so that from one
  pose to the next the part goes evenly. None where no axis leads past them.

@@ -196,6 +196,7 @@ class ProtocolReader {
     read("k3", {0, haptics::kLargestK3}, &guidance->k3);
     guidance->attracts_in_fits = these.FlagOr("in_fits", guidance->attracts_in_fits);
     guidance->contact_in_holes = these.FlagOr("contact_in_holes", guidance->contact_in_holes);
+    guidance->threads_turn = these.FlagOr("threads_turn", guidance->threads_turn);
     these.Finish();
   }
 
