@@ -32,8 +32,8 @@ except ImportError:
         """Arrays between two bounds; the part of gymnasium.spaces.Box that the environments need."""
 
         def __init__(self, low, high, shape, dtype=np.float32):
-            self.low = np.full(shape, low, dtype)
-            self.high = np.full(shape, high, dtype)
+            self.low = np.broadcast_to(np.asarray(low, dtype), shape)
+            self.high = np.broadcast_to(np.asarray(high, dtype), shape)
             self.shape, self.dtype = tuple(shape), np.dtype(dtype)
             self._random = np.random.default_rng()
 
@@ -50,6 +50,8 @@ except ImportError:
             x = np.asarray(x)
             return x.shape == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
 
+        __contains__ = contains
+
         def __repr__(self):
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
 
@@ -62,17 +64,32 @@ except ImportError:
         def __getitem__(self, name):
             return self.spaces[name]
 
+        def values(self):
+            return self.spaces.values()
+
+        def sample(self):
+            return {name: space.sample() for name, space in self.spaces.items()}
+
         def contains(self, x):
             return x.keys() == self.spaces.keys() and all(space.contains(x[name]) for name, space in self.spaces.items())
+
+        __contains__ = contains
 
     class Base:
         """What gymnasium.Env gives its environments."""
 
-        np_random = None
+        spec = None
+        _np_random = None
+
+        @property
+        def np_random(self):
+            if self._np_random is None:
+                self._np_random = np.random.default_rng()
+            return self._np_random
 
         def reset(self, *, seed=None, options=None):
-            if seed is not None or self.np_random is None:
-                self.np_random = np.random.default_rng(seed)
+            if seed is not None:
+                self._np_random = np.random.default_rng(seed)
 
         @property
         def unwrapped(self):
@@ -84,12 +101,15 @@ except ImportError:
 
 OBSERVATION = (
     "position of the part less its place, in the frame of its place [m] (3)",
-    "rotation vector from its place [rad] (3)",
+    "rotation vector from its place, the shorter way round [rad] (3)",
     "force on the hand [N] (3) and torque [N m] (3), in the frame of its place",
     "depth of insertion [m]",
     "contacts that press",
 )
 """What the numbers of an observation are."""
+
+# Bounds of them: a part 10 m away, half a turn, ten times what any device gives, 128 contacts.
+_MOST = np.array([10.0] * 3 + [math.pi + 1e-9] * 3 + [1000.0] * 3 + [100.0] * 3 + [10.0, 128.0])
 
 
 def _products():
@@ -121,6 +141,9 @@ def _quaternion(turn):
     return np.array([math.cos(angle / 2), *(np.sinc(angle / (2 * math.pi)) / 2 * np.asarray(turn))])
 
 
+_CONJUGATE = np.array([1, -1, -1, -1])
+
+
 def _turn(q):
     """Rotation vector of a quaternion, the shorter way round."""
     q = np.asarray(q) if q[0] >= 0 else -np.asarray(q)
@@ -132,9 +155,11 @@ class Insertion(Base):
     """One part that has to go to its place, from a start a little before where it engages.
 
     An action moves what the hand is led to, by shares of `reach` and `turn`: six numbers of -1 to 1, in the frame of the
-    place. The arm is a spring of 400 N/m and 6 N m/rad to there, and it goes no further than `lead` ahead of the hand,
-    which is how hard it presses on what does not give way. With mode="wrench" the first three numbers are shares of
+    place. The arm is a spring of 400 N/m and 6 N m/rad to there, and it goes no further than `lead`
+    and `most_turn` ahead of the hand, which is how hard it presses on what does not give way. With mode="wrench" the first three numbers are shares of
     `force`. Either comes on top of the force that holds the part up.
+
+    Threaded parts go in by turning where threads_turn says so, and are in their place once they are tight.
 
     Reward: what the part came nearer to its place, in shares of its way; less 1e-3 for each newton beyond its load;
     10 when it is in its place. An episode is terminated then, and truncated after `limit_s`.
@@ -147,6 +172,7 @@ class Insertion(Base):
         tilt: The start is turned by up to so much [rad].
         contact_in_holes: A shaft with play touches its hole: it can tilt, jam and wedge.
         friction: Coulomb coefficient of all contacts, or two between which each episode draws one; None: the materials'.
+        spin: The start is turned about the way by up to so much [rad].
         clear: How far before the place where it engages the part begins [m].
         ticks: Haptic ticks in a step of the environment.
         picture: Width and height of a picture drawn without a screen; then an observation is a dictionary of the
@@ -154,18 +180,16 @@ class Insertion(Base):
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
-    most_turn = 0.1  # The hand is turned no further ahead of where it is [rad]: 0.6 N m.
-
     def __init__(self, model, step=1, *, mode="pose", condition="hybrid", contact_in_holes=True, seeds_fits=True, friction=None,
-                 offset=1e-3, tilt=0.01, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, force=20.0, ticks=20, limit_s=20.0,
-                 picture=None, render_mode=None):
+                 threads_turn=False, offset=1e-3, tilt=0.01, spin=0.0, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, most_turn=0.1,
+                 force=20.0, ticks=20, limit_s=20.0, picture=None, render_mode=None):
         if mode not in ("pose", "wrench"):
             raise ValueError("mode is 'pose' or 'wrench'")
         self.model, self.mode, self.condition = model, mode, condition
         self.contact_in_holes, self.seeds_fits = contact_in_holes, seeds_fits
-        self.friction = friction
-        self.offset, self.tilt, self.clear = offset, tilt, clear
-        self.reach, self.turn, self.lead, self.force = reach, turn, lead, force
+        self.friction, self.threads_turn = friction, threads_turn
+        self.offset, self.tilt, self.spin, self.clear = offset, tilt, spin, clear
+        self.reach, self.turn, self.lead, self.most_turn, self.force = reach, turn, lead, most_turn, force
         self.ticks, self.limit_s = ticks, limit_s
         self.part = model.steps[step]
         goal = np.array(self.part.goal)
@@ -173,7 +197,7 @@ class Insertion(Base):
         self._out = self._R.T @ np.array(self.part.extraction)  # The way out in the frame of the place.
         self._way = self.part.engage_distance + clear
         self.picture, self.render_mode = picture, render_mode
-        self.observation_space = Box(-np.inf, np.inf, (14,), np.float64)
+        self.observation_space = Box(-_MOST, _MOST, _MOST.shape, np.float64)
         if picture:
             pixels = Box(0, 255, (picture[1], picture[0], 3), np.uint8)
             self.observation_space = Dict({"numbers": self.observation_space, "picture": pixels})
@@ -190,14 +214,16 @@ class Insertion(Base):
         beside = self.np_random.uniform(-1, 1, 3)
         beside -= (beside @ self._out) * self._out
         position = self._way * self._out + self.offset * beside / max(1.0, np.linalg.norm(beside))
-        turn = self.tilt * self.np_random.uniform(-1, 1, 3) / math.sqrt(3)
-        start = self._pose(position, turn)
+        tilted = _quaternion(self.tilt * self.np_random.uniform(-1, 1, 3) / math.sqrt(3))
+        spun = self.spin * self.np_random.uniform(-1, 1) if self.spin else 0.0
+        start_turn = _multiply(tilted, _quaternion(spun * self._out))
+        start = self._pose(position, start_turn)
         self.run = hvas.Run(model, self.part.index, start=start, condition=self.condition,
-                            contact_in_holes=self.contact_in_holes)
+                            contact_in_holes=self.contact_in_holes, threads_turn=self.threads_turn)
         self.run.step(pose=start, ticks=500)
         self._load = -self.run.force[:3]  # What the arm has to hold up.
         self.run.step(pose=start, force=self._load, ticks=500)
-        self._led_p, self._led_turn = position, turn
+        self._led_p, self._led_q = position, start_turn
         self._begin = self.run.t
         self._distance = self._way
         return self._with_picture(self._observe()), self._info()
@@ -206,16 +232,17 @@ class Insertion(Base):
         action = np.clip(np.asarray(action, dtype=np.float64), -1, 1)
         if action.shape != (6,) or not np.all(np.isfinite(action)):
             raise ValueError("an action is six finite numbers")
-        position, turn = self._in_place(np.array(self.run.led))
+        position, q = self._in_place(np.array(self.run.led))
         if self.mode == "wrench":
             self._led_p, force = position, self._load + self._R @ (self.force * action[:3])
         else:
             self._led_p, force = self._led_p + self.reach * action[:3], self._load
             ahead = self._led_p - position
             self._led_p = position + ahead * min(1.0, self.lead / max(np.linalg.norm(ahead), 1e-12))
-        ahead = self._led_turn + self.turn * action[3:] - turn
-        self._led_turn = turn + np.clip(ahead, -self.most_turn, self.most_turn)
-        self.run.step(pose=self._pose(self._led_p, self._led_turn), force=force, ticks=self.ticks)
+        wanted = _multiply(_quaternion(self.turn * action[3:]), self._led_q)
+        ahead = np.clip(_turn(_multiply(wanted, q * _CONJUGATE)), -self.most_turn, self.most_turn)
+        self._led_q = _multiply(_quaternion(ahead), q)
+        self.run.step(pose=self._pose(self._led_p, self._led_q), force=force, ticks=self.ticks)
         observation = self._observe()
         distance = float(np.linalg.norm(observation[:3]))
         excess = float(np.linalg.norm(self.run.force[:3] + self._load))
@@ -237,19 +264,19 @@ class Insertion(Base):
     def _with_picture(self, numbers):
         return {"numbers": numbers, "picture": self._draw(*self.picture)} if self.picture else numbers
 
-    def _pose(self, position, turn):
+    def _pose(self, position, turned):
         """Seven numbers in the world of a pose in the frame of the place."""
-        q = _multiply(self._q, _quaternion(turn))
+        q = _multiply(self._q, turned)
         return (*(self._p + self._R @ position), *(q / np.linalg.norm(q)))
 
     def _in_place(self, pose):
-        """Position and rotation vector in the frame of the place of a pose in the world."""
-        inverse = self._q * np.array([1, -1, -1, -1])
-        return self._R.T @ (pose[:3] - self._p), _turn(_multiply(inverse, pose[3:]))
+        """Position and quaternion in the frame of the place of a pose in the world."""
+        return self._R.T @ (pose[:3] - self._p), _multiply(self._q * _CONJUGATE, pose[3:])
 
     def _observe(self):
         wrench, row = self.run.force, self.run.rows[-1]
-        return np.concatenate([*self._in_place(self.run.pose), self._R.T @ wrench[:3], self._R.T @ wrench[3:],
+        position, q = self._in_place(self.run.pose)
+        return np.concatenate([position, _turn(q), self._R.T @ wrench[:3], self._R.T @ wrench[3:],
                                [row["insertion"], row["contacts"]]])
 
     def _info(self):
@@ -285,12 +312,19 @@ def gear_on_shaft(**options):
     return _insertion(_products() / "gear_pump.step", "driven gear shaft", **options)
 
 
+def nut_on_bolt(**options):
+    """A nut M8 that is turned onto its bolt, from any angle, until it clamps the plate: ten turns and 24 N m."""
+    return _insertion(_products() / "nut_bolt.step", "nut",
+                      **{"threads_turn": True, "spin": math.pi, "turn": 0.2, "most_turn": 0.5, "limit_s": 60.0, **options})
+
+
 def part_of(file, path, **options):
     """The next part of any product: the one whose path ends so."""
     return _insertion(file, path, **options)
 
 
-ENVIRONMENTS = {"PegInHole": peg_in_hole, "PressFit": press_fit, "GearOnShaft": gear_on_shaft, "PartOf": part_of}
+ENVIRONMENTS = {"PegInHole": peg_in_hole, "PressFit": press_fit, "GearOnShaft": gear_on_shaft, "NutOnBolt": nut_on_bolt,
+                "PartOf": part_of}
 
 
 def make(name, **options):

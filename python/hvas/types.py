@@ -146,6 +146,8 @@ class PartResult:
     peak_felt: float  # [N]
     fit_true: float  # [N]
     fit_felt: float  # [N]
+    preload: float  # largest force in it as a screw or nut that was turned [N]
+    tightening: float  # largest torque of its thread and head [N m]
     deepest: float  # deepest penetration [m], negative inside
     arrival: float  # how far the hand brought it from its place [m]
 

@@ -12,6 +12,7 @@ namespace hvas::python {
 namespace {
 
 using assembly::SteppedRun;
+using assembly::ContactRow;
 using assembly::TickRow;
 using simulation::Model;
 using ModelPtr = std::shared_ptr<const Model>;
@@ -185,18 +186,20 @@ py::object Describe(const simulation::PartResult& part, const Model& model) {
                py::arg("time") = part.time, py::arg("path_length") = part.path,
                py::arg("peak_true") = part.peak_true, py::arg("peak_felt") = part.peak_felt,
                py::arg("fit_true") = part.fit_true, py::arg("fit_felt") = part.fit_felt,
+               py::arg("preload") = part.preload, py::arg("tightening") = part.tightening,
                py::arg("deepest") = part.deepest, py::arg("arrival") = part.arrival));
 }
 
 py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
                     const std::vector<std::string>& devices, const std::string& condition,
-                    bool is_realtime, double limit_s, const std::filesystem::path& record,
+                    bool turns_threads, bool is_realtime, double limit_s, const std::filesystem::path& record,
                     bool is_replaced, const py::object& on_part) {
   std::stop_source stop;
   assembly::RunOptions options;
   options.seed = seed;
   options.devices = devices;
   options.condition = ToCondition(condition);
+  options.guidance.threads_turn = turns_threads;
   options.is_realtime = is_realtime;
   options.limit_s = limit_s;
   options.record = record;
@@ -323,8 +326,12 @@ class PythonRun {
   /** Rows of the last call of step, where they are; the next one writes over them. */
   static py::array View(const py::object& self) {
     auto& run = self.cast<PythonRun&>();
-    return py::array(py::dtype::of<TickRow>(), {static_cast<py::ssize_t>(run.rows_.size())},
-                     {static_cast<py::ssize_t>(sizeof(TickRow))}, run.rows_.data(), self);
+    return ViewOf(run.rows_, self);
+  }
+
+  /** Contacts of the last tick, where they are. */
+  static py::array ViewContacts(const py::object& self) {
+    return ViewOf(self.cast<PythonRun&>().run_->contacts(), self);
   }
 
   /** Where the hand is. */
@@ -338,6 +345,12 @@ class PythonRun {
   [[nodiscard]] const Model& model() const { return *model_; }
 
  private:
+  template <typename Row>
+  static py::array ViewOf(std::span<const Row> rows, const py::object& owner) {
+    return py::array(py::dtype::of<Row>(), {static_cast<py::ssize_t>(rows.size())},
+                     {static_cast<py::ssize_t>(sizeof(Row))}, rows.data(), owner);
+  }
+
   static constexpr std::size_t kMostTicks = 1'000'000;  // A quarter of a GB of rows: a choice.
 
   ModelPtr model_;
@@ -350,7 +363,8 @@ class PythonRun {
 
 void DefineRun(py::module_* module) {
   PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
-                       insertion, axial_true, preload, offset, tilt, contacts, state);
+                       insertion, axial_true, preload, tightening, offset, tilt, contacts, state);
+  PYBIND11_NUMPY_DTYPE(ContactRow, p_WC, f_C_W, distance, other);
   const simulation::PersonOptions arm;
   py::class_<ModelHandle>(*module, "Model",
                           "A product that is prepared: immutable, and shared by all runs.")
@@ -368,10 +382,11 @@ void DefineRun(py::module_* module) {
            "cramped, reach, force, hand_time.")
       .def("assemble", &Assemble, py::arg("seed") = 1,
            py::arg("devices") = std::vector<std::string>{""}, py::arg("condition") = "hybrid",
-           py::arg("realtime") = false, py::arg("limit_s") = 0.0, py::arg("record") = "",
+           py::arg("threads_turn") = false, py::arg("realtime") = false, py::arg("limit_s") = 0.0, py::arg("record") = "",
            py::arg("replace") = false, py::arg("on_part") = py::none(),
            "Has a simulated person, or the user of a device, put every part in; in virtual time "
-           "unless realtime. on_part is called with each hvas.types.PartResult.")
+           "unless realtime. threads_turn: screws and nuts go in by turning, and are tightened. on_part "
+           "is called with each hvas.types.PartResult.")
       .def("__repr__", [](const ModelHandle& handle) {
         return "<hvas.Model " + handle.model->product->source + ": " +
                std::to_string(handle.model->sequence.steps.size()) + " steps>";
@@ -418,10 +433,14 @@ void DefineRun(py::module_* module) {
           "copy what is to stay. Fields: t_s, X_WH (hand), X_WB (part), F_felt_W and F_true_W "
           "(force, "
           "then torque), p_WC and f_C_W (the contact that presses hardest), deepest, insertion, "
-          "axial_true, preload, offset, tilt, contacts, state (index into hvas.STATES).")
+          "axial_true, preload, tightening, offset, tilt, contacts, state (index into hvas.STATES).")
       .def_property_readonly(
           "rows", [](const py::object& self) { return PythonRun::View(self); },
           "What the last step returned.")
+      .def_property_readonly(
+          "contacts", [](const py::object& self) { return PythonRun::ViewContacts(self); },
+          "All contacts that pressed on the part in the last tick, a view as rows are. Fields: p_WC, "
+          "f_C_W (force on the part), distance, other (occurrence; -1: none).")
       .def_property_readonly("seated", [](const PythonRun& run) { return run.run().is_seated(); })
       .def_property_readonly(
           "t", [](const PythonRun& run) { return run.run().last().t_s; },

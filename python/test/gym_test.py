@@ -119,6 +119,60 @@ class Others(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "PegInHole"):
             gym.make("Nothing")
 
+    def test_does_what_gymnasiums_check_looks_for(self):
+        """The assertions and warnings of check_env of Gymnasium 0.29, with the stand-ins."""
+        for options in ({}, {"picture": (32, 24), "render_mode": "rgb_array"}):
+            environment = gym.make("PegInHole", **options)
+            self.assertIs(environment.unwrapped, environment)
+            self.assertTrue(np.all(environment.action_space.low == -1) and np.all(environment.action_space.high == 1))
+            space = environment.observation_space
+            for box in space.values() if options else [space]:
+                self.assertTrue(np.all(np.isfinite(box.low)) and np.all(np.isfinite(box.high)) and np.all(box.low < box.high))
+            self.assertFalse(hasattr(environment, "seed"))
+
+            def reset(**arguments):
+                observation, info = environment.reset(**arguments)
+                self.assertIn(observation, space)
+                self.assertIsInstance(info, dict)
+                return observation, environment.unwrapped._np_random.bit_generator.state
+
+            first, state = reset(seed=123)
+            again, same = reset(seed=123)
+            numbers = (first["numbers"], again["numbers"]) if options else (first, again)
+            np.testing.assert_array_equal(*numbers)
+            self.assertEqual(state, same)
+            self.assertNotEqual(reset(seed=456)[1], state)
+            reset(options={})
+            observation, reward, terminated, truncated, info = environment.step(environment.action_space.sample())
+            self.assertIn(observation, space)
+            self.assertTrue(np.isscalar(reward) and np.isfinite(reward))
+            self.assertIsInstance(terminated, (bool, np.bool_))
+            self.assertIsInstance(truncated, (bool, np.bool_))
+            self.assertIsInstance(info, dict)
+            if options:
+                self.assertIn(environment.render_mode, environment.metadata["render_modes"])
+                picture = environment.render()
+                self.assertEqual((picture.dtype, picture.ndim, picture.shape[2]), (np.uint8, 3, 3))
+            environment.close()
+            environment.close()
+
+    def test_a_nut_is_turned_onto_its_bolt_from_any_angle_and_tightened(self):
+        environment = gym.make("NutOnBolt")
+        bolt = 24.5  # Torque of an M8 of property class 8.8 with friction 0.12 (VDI 2230-1) [N m].
+        for seed in range(5):
+            observation, _ = environment.reset(seed=seed)
+            torque = 0.0
+            while True:
+                across, turn = observation[:2], observation[3:5]
+                action = [*(-0.1 * across / environment.reach), -0.3, *(-0.1 * turn / environment.turn), -1.0]
+                observation, reward, terminated, truncated, info = environment.step(np.clip(action, -1, 1))
+                torque = max(torque, environment.run.rows["tightening"].max())
+                if terminated or truncated:
+                    break
+            self.assertTrue(terminated, (seed, observation))
+            self.assertGreater(torque, 0.9 * bolt)
+            self.assertLess(torque, 1.1 * bolt)
+
     def test_a_vector_of_environments_is_what_each_gives(self):
         model = gym.make("PegInHole").model
         vector = gym.Vector(lambda: gym.Insertion(model, seeds_fits=False), 4)

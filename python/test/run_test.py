@@ -109,6 +109,24 @@ class Run(unittest.TestCase):
         gc.collect()
         self.assertTrue(np.all(np.isfinite(rows["F_felt_W"])))
 
+    def test_contacts_are_all_that_press_and_carry_the_part(self):
+        pose = self.goal + np.array([5e-3, 0, 0.05, 0, 0, 0, 0])  # Over the rim of the bore.
+        run = hvas.Run(self.model, 1, start=pose, condition="collision")
+        pose[2] -= 0.02
+        run.step(pose=pose, ticks=3000)
+        contacts, row = run.contacts, run.rows[-1]
+        self.assertFalse(contacts.flags.owndata)
+        self.assertGreater(len(contacts), 0)
+        self.assertEqual(len(contacts), row["contacts"])
+        hardest = contacts[np.argmax(np.linalg.norm(contacts["f_C_W"], axis=1))]
+        np.testing.assert_array_equal(hardest["p_WC"], row["p_WC"])
+        np.testing.assert_array_equal(hardest["f_C_W"], row["f_C_W"])
+        self.assertTrue(np.all(contacts["other"] == 0))
+        self.assertTrue(np.all(contacts["distance"] > -100e-6))
+        held = contacts["f_C_W"].sum(axis=0)[2]
+        self.assertGreater(held, 5)
+        self.assertAlmostEqual(row["F_true_W"][2], held - 9.81 * run.mass, delta=0.05)
+
     def test_a_hundred_runs_of_one_seed_have_the_same_digest(self):
         digests = set()
         for _ in range(100):

@@ -50,10 +50,20 @@ TickRow MakeRow(std::int64_t t_ns, const haptics::TickOutput& out) noexcept {
   row.insertion = out.insertion_depth;
   row.axial_true = out.axial_true;
   row.preload = out.preload;
+  row.tightening = out.tightening;
   row.offset = out.axis.offset;
   row.tilt = out.axis.tilt;
   row.contacts = out.contact_count;
   row.state = static_cast<std::int32_t>(out.state);
+  return row;
+}
+
+ContactRow MakeRow(const haptics::PressingContact& contact) {
+  ContactRow row;
+  Write(contact.p_WC, row.p_WC);
+  Write(contact.f_C_W, row.f_C_W);
+  row.distance = contact.distance;
+  row.other = contact.body.is_valid() ? static_cast<std::int32_t>(contact.body.value()) : -1;
   return row;
 }
 
@@ -98,7 +108,7 @@ Result<std::unique_ptr<SteppedRun>> SteppedRun::Create(
   }
   std::unique_ptr<SteppedRun> run(new SteppedRun(std::move(model), options));
   if (!run->TakeUp()) {
-    return Fail(ErrorCode::kInternal, "the part could not be taken",
+    return Fail(ErrorCode::kInvalid, "the part cannot be taken",
                 run->model().product->occurrences[run->step().occurrence.index()].path,
                 "give a pose at which nothing else is within the hand's reach");
   }
@@ -183,6 +193,10 @@ std::span<const TickRow> SteppedRun::Step(const simulation::HandReference& refer
   hand_->Lead(reference);
   for (std::size_t i = 0; i < ticks; ++i) {
     lockstep_->Tick();
+  }
+  contacts_.clear();
+  for (const haptics::PressingContact& contact : simulation_->haptics().pressing(0)) {
+    contacts_.push_back(MakeRow(contact));
   }
   return rows_;
 }

@@ -46,10 +46,19 @@ struct TickRow {
   double insertion{0};       ///< Depth of the shaft in its hole [m].
   double axial_true{0};      ///< Resistance of the fits along their axis [N].
   double preload{0};         ///< Force in a screw or nut that is being tightened [N].
+  double tightening{0};      ///< Torque of its thread and head [N m].
   double offset{0};          ///< Distance from the axis that guides the part [m]; 0: none does.
   double tilt{0};            ///< Angle to that axis [rad].
   std::int32_t contacts{0};  ///< Contacts that press.
   std::int32_t state{0};     ///< haptics::HoldState.
+};
+
+/** A contact that presses on the part, in plain numbers, in W. */
+struct ContactRow {
+  double p_WC[3]{};
+  double f_C_W[3]{};      ///< Force on the part [N].
+  double distance{0};     ///< Before the tick; negative inside [m].
+  std::int32_t other{-1}; ///< OccurrenceId of the part that it is with; -1: none.
 };
 
 /** An assembly that a program runs tick by tick in virtual time, with a hand that it leads itself:
@@ -59,8 +68,8 @@ struct TickRow {
 class SteppedRun {
  public:
   /** Prepares a run, with the part in the hand.
-   Errors: kInvalid for a step that puts nothing in or does not exist, a pose that is not finite, or
-   a rate outside 1000 to 8000 Hz; kInternal where the part could not be taken. */
+   Errors: kInvalid for a step that puts nothing in or does not exist, a pose that is not finite, a
+   rate outside 1000 to 8000 Hz, or a part that cannot be taken there. */
   [[nodiscard]] static Result<std::unique_ptr<SteppedRun>> Create(
       std::shared_ptr<const simulation::Model> model, const SteppedOptions& options);
 
@@ -73,6 +82,9 @@ class SteppedRun {
 
   /** Row of the last tick. */
   [[nodiscard]] const TickRow& last() const { return rows_.back(); }
+
+  /** Contacts that pressed in the last tick; valid until the next step. */
+  [[nodiscard]] std::span<const ContactRow> contacts() const { return contacts_; }
 
   [[nodiscard]] bool is_seated() const {
     return rows_.back().state == static_cast<std::int32_t>(haptics::HoldState::kSeated);
@@ -107,6 +119,7 @@ class SteppedRun {
   spatial::Pose X_WB_goal_;
   spatial::Pose X_HB_;
   std::vector<TickRow> rows_;
+  std::vector<ContactRow> contacts_;
   std::unique_ptr<simulation::Simulation> simulation_;
   std::unique_ptr<simulation::ArmHand> hand_;
   std::shared_ptr<RowKeeper> keeper_;

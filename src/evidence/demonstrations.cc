@@ -222,6 +222,9 @@ Result<void> WriteDemonstrations(const std::vector<Demonstration>& demonstration
     return Fail(ErrorCode::kInvalid, "there is no demonstration to write", file.string(),
                 "take a record in which a part was in a hand");
   }
+  if (file.extension() == ".mcap") {
+    return WriteMcap(demonstrations, file);
+  }
   auto output = OutputFile::Create(file);
   if (!output) {
     return Unexpected(output.error());

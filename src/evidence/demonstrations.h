@@ -38,10 +38,16 @@ struct Demonstration {
 [[nodiscard]] std::vector<Demonstration> ListPlannedWays(const simulation::Model& model,
                                                          double rate);
 
-/** Writes demonstrations as HDF5 in the layout of robomimic (docs/record.md). Errors: kInvalid for
- none; kNotFound and kOutOfResource of the file.
- @param environment  Name of what they are of. */
+/** Writes demonstrations as HDF5 in the layout of robomimic or, where the name of the file ends in
+ .mcap, as MCAP (docs/record.md). Errors: kInvalid for none; kNotFound and kOutOfResource of the
+ file.
+ @param environment  Name of what they are of; HDF5 only. */
 Result<void> WriteDemonstrations(const std::vector<Demonstration>& demonstrations,
                                  const std::string& environment, const std::filesystem::path& file);
+
+/** MCAP for Foxglove and Rerun: `/demonstration` with what each sample is of, and `/tf` with the
+ poses. Errors: of the file. */
+Result<void> WriteMcap(const std::vector<Demonstration>& demonstrations,
+                       const std::filesystem::path& file);
 
 }  // namespace hvas::evidence

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evidence/demonstrations.h"
 #include "evidence/mcap_writer.h"
 #include "evidence/tables.h"
 
@@ -97,7 +98,63 @@ Json MakeLog(const record::Event& event, const std::vector<std::string>& paths) 
           {"line", 0}};
 }
 
+Json MakeSampleSchema() {
+  return {{"type", "object"},
+          {"title", "hvas.Demonstration"},
+          {"properties",
+           {{"demonstration", NumberSchema("counted from 0")},
+            {"part", {{"type", "string"}}},
+            {"source", {{"enum", {"record", "plan"}}}},
+            {"seated", {{"type", "boolean"}, {"description", "it ends in its place"}}},
+            {"t_s", NumberSchema("session time [s]")},
+            {"to_goal_m", NumberSchema("distance of the part's origin from its place [m]")},
+            {"felt_n", NumberSchema("force on the hand [N]")},
+            {"insertion_mm", NumberSchema("depth of insertion [mm]")}}}};
+}
+
 }  // namespace
+
+// One after the other, from time 0 on, with a pause between two.
+Result<void> WriteMcap(const std::vector<Demonstration>& demonstrations,
+                       const std::filesystem::path& file) {
+  constexpr std::int64_t kPause_ns = 1'000'000'000;  // A choice.
+  auto output = OutputFile::Create(file);
+  if (!output) {
+    return Unexpected(output.error());
+  }
+  McapWriter writer(&*output);
+  const std::uint16_t samples =
+      writer.AddChannel("/demonstration", "hvas.Demonstration", Dump(MakeSampleSchema()));
+  const std::uint16_t transforms =
+      writer.AddChannel("/tf", "foxglove.FrameTransforms", Dump({{"type", "object"}}));
+  std::int64_t begin_ns = 0;
+  std::int64_t t_ns = 0;
+  for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+    const Demonstration& demonstration = demonstrations[i];
+    for (const DemonstrationSample& sample : demonstration.samples) {
+      t_ns = begin_ns + std::llround(1e9 * (sample.t - demonstration.samples.front().t));
+      const Json message{
+          {"demonstration", i},
+          {"part", demonstration.part},
+          {"source", demonstration.source},
+          {"seated", demonstration.is_seated},
+          {"t_s", sample.t},
+          {"to_goal_m", (sample.X_WB.p() - demonstration.X_WB_goal.p()).norm()},
+          {"felt_n", sample.F_felt_W.f.norm()},
+          {"insertion_mm", 1e3 * sample.insertion}};
+      writer.Add(samples, t_ns, Dump(message));
+      Json list = Json::array();
+      list.push_back(MakeTransform(t_ns, "hand", sample.X_WH));
+      list.push_back(MakeTransform(t_ns, demonstration.part, sample.X_WB));
+      list.push_back(
+          MakeTransform(t_ns, demonstration.part + " in its place", demonstration.X_WB_goal));
+      writer.Add(transforms, t_ns, Dump({{"transforms", std::move(list)}}));
+    }
+    begin_ns = t_ns + kPause_ns;
+  }
+  writer.Finish();
+  return output->Finish();
+}
 
 Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
                        const std::filesystem::path& file) {

@@ -79,6 +79,7 @@ void ContactStep::Begin(const HeldPart* held, const HandExchange* other) noexcep
   }
   turned_count_ = 0;
   turned_speed_ = 0;
+  pressing_count_ = 0;
 }
 
 spatial::Wrench ContactStep::CalcPush(std::uint32_t hold) const noexcept {
@@ -623,6 +624,7 @@ void ContactStep::RecordContacts(const ConstraintSolver& solver) noexcept {
       continue;
     }
     ++account_.contact_count;
+    pressing_[pressing_count_++] = {c.p_WC, solver.contact_force(i), c.distance, c.body};
     if (force > hardest) {
       hardest = force;
       account_.p_WC = c.p_WC;

@@ -147,6 +147,12 @@ class ContactStep {
     return std::exchange(account_, ContactAccount());
   }
 
+  /** Contacts that pressed on the held part in the last tick, but for those with the other hand's part
+   that its step has solved. */
+  [[nodiscard]] std::span<const PressingContact> pressing() const noexcept {
+    return {pressing_.data(), pressing_count_};
+  }
+
   /** Wrench that the other hand's last step had on the held part, at its centre of mass. */
   [[nodiscard]] spatial::Wrench CalcPush(std::uint32_t hold) const noexcept;
 
@@ -208,6 +214,9 @@ class ContactStep {
   double turned_speed_{0};  ///< Largest speed of a point of what was turned in this tick [m/s].
   std::array<contact::IgnoredPair, MateGuide::kPairsPerMate * MateGuide::kMaxMates> ignored_;
   std::array<contact::Contact, ConstraintSolver::kMaxContacts> contacts_;  ///< Those in the solver.
+
+  std::array<PressingContact, ConstraintSolver::kMaxContacts> pressing_;
+  std::size_t pressing_count_{0};
 
   // Values of the present tick.
   const HeldPart* held_{nullptr};       ///< Null between ticks.

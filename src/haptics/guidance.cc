@@ -152,6 +152,7 @@ void Guidance::Finish(const ConstraintSolver& solver, TickOutput* out) noexcept 
   const ThreadForces thread = thread_rows_.Finish(solver);
   out->F_true_W.t += (thread.torque_true - thread.torque_felt) * thread_rows_.out_W();
   out->preload = thread.preload;
+  out->tightening = std::abs(thread.torque_true);
   out->is_thread_crossed = thread_rows_.is_crossed();
   out->insertion_depth = guide_.insertion_depth();
 }

@@ -108,6 +108,11 @@ class HapticTick {
   /** What this hand gives the other one now. RT-safe. */
   [[nodiscard]] HandExchange Exchange() const noexcept;
 
+  /** ContactStep::pressing(). */
+  [[nodiscard]] std::span<const PressingContact> pressing() const noexcept {
+    return contacts_.pressing();
+  }
+
   [[nodiscard]] const HeldPart* held() const noexcept { return displayed_.part; }
 
   [[nodiscard]] HoldState state() const noexcept { return state_; }

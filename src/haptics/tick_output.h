@@ -41,6 +41,14 @@ struct TickContext {
   int effort_level{0};           ///< The loop's own number of what SetEffort was given.
 };
 
+/** A contact of the held part that presses in one tick. */
+struct PressingContact {
+  Vec3 p_WC{Vec3::Zero()};
+  Vec3 f_C_W{Vec3::Zero()};  ///< Its force on the held part [N].
+  double distance{0};        ///< Before the step; negative inside [m].
+  contact::BodyId body;      ///< The body that it is with; invalid for the ground or none.
+};
+
 /** Contacts of the held part in one tick. */
 struct ContactAccount {
   /** Deepest contact [m], negative inside; +inf where nothing is near. */
@@ -71,7 +79,8 @@ struct TickOutput : ContactAccount {
   double insertion_depth{0};  ///< Depth of insertion l [m].
   double axial_true{0};       ///< Force of the fits on their axis; positive against going in [N].
   double axial_felt{0};
-  double preload{0};              ///< Force in a screw or nut that is being tightened [N].
+  double preload{0};              ///< Force in a screw or nut that is being tightened, true [N].
+  double tightening{0};           ///< Torque of its thread and head, true, >= 0 [N m].
   bool is_thread_crossed{false};  ///< It came into its thread tilted, and sticks there.
   std::uint32_t gate_actions{0};
   WorkspaceMapping workspace;       ///< How the handle moved the hand.

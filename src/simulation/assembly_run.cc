@@ -99,7 +99,8 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   const std::string tries = person != nullptr
                                 ? fmt::format("gave up after {} searches", person->searches())
                                 : std::string("was let go elsewhere");
-  return fmt::format("{}{}; {}", tries, depth, DescribeHardest(metrics));
+  const char* crossed = metrics.is_thread_crossed ? ", with its thread crossed" : "";
+  return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
 }
 
 std::size_t AssemblyRun::IndexOf(const SequenceStep& step) const {

@@ -272,6 +272,9 @@ void HapticSide::UpdateMetrics(Hand* hand, std::int64_t t_ns,
   metrics.peak_felt = std::max(metrics.peak_felt, out.F_H_W.f.norm());
   metrics.fit_true = std::max(metrics.fit_true, std::abs(out.axial_true));
   metrics.fit_felt = std::max(metrics.fit_felt, std::abs(out.axial_felt));
+  metrics.preload = std::max(metrics.preload, out.preload);
+  metrics.tightening = std::max(metrics.tightening, out.tightening);
+  metrics.is_thread_crossed = metrics.is_thread_crossed || out.is_thread_crossed;
   metrics.deepest = std::max(metrics.deepest, -out.deepest);
   metrics.insertion = std::max(metrics.insertion, out.insertion_depth);
   if (out.contact_count > 0) {

@@ -256,6 +256,8 @@ void PartRun::AddHold(OccurrenceId id) {
   result.peak_felt = std::max(result.peak_felt, metrics.peak_felt);
   result.fit_true = std::max(result.fit_true, metrics.fit_true);
   result.fit_felt = std::max(result.fit_felt, metrics.fit_felt);
+  result.preload = std::max(result.preload, metrics.preload);
+  result.tightening = std::max(result.tightening, metrics.tightening);
   result.deepest = std::max(result.deepest, metrics.deepest);
   result.insertion = std::max(result.insertion, metrics.insertion);
   result.arrival = metrics.arrival;

@@ -50,6 +50,8 @@ struct PartResult {
   double peak_felt{0};                    ///< [N]
   double fit_true{0};                     ///< Largest axial force of its fits, true [N].
   double fit_felt{0};                     ///< Largest axial force of its fits, as felt [N].
+  double preload{0};                      ///< Largest force in it as a screw or nut, true [N].
+  double tightening{0};                   ///< Largest torque of its thread and head, true [N m].
   double deepest{0};                      ///< Deepest penetration met [m].
   Passage passage;                        ///< What it passed through, beyond what is drawn.
   double insertion{0};                    ///< Longest that a mate's shaft was in its hole [m].

@@ -21,7 +21,10 @@ struct HoldMetrics {
   double peak_felt{0};      ///< Largest force given to the device [N].
   double fit_true{0};       ///< Largest axial force of fits, true [N].
   double fit_felt{0};       ///< Largest axial force of fits, as felt [N].
-  double deepest{0};        ///< Deepest penetration, >= 0 [m].
+  double preload{0};        ///< Largest force in it as a screw or nut, true [N].
+  double tightening{0};     ///< Largest torque of its thread and head, true [N m].
+  bool is_thread_crossed{false};  ///< It came into its thread tilted.
+  double deepest{0};              ///< Deepest penetration, >= 0 [m].
   double insertion{0};      ///< Longest engagement of a captured axis [m].
   double arrival{0};        ///< Distance from its place when it was moved exactly there [m].
   double arrival_angle{0};  ///< Angle from its place then [rad].

@@ -128,6 +128,8 @@ nlohmann::ordered_json MakeHoldJson(const simulation::PartResult& part) {
           {"peak_felt_n", part.peak_felt},
           {"fit_true_n", part.fit_true},
           {"fit_felt_n", part.fit_felt},
+          {"preload_n", part.preload},
+          {"tightening_nm", part.tightening},
           {"deepest_um", units::ToUm(part.deepest)}};
 }
 

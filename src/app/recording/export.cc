@@ -67,9 +67,9 @@ Result<void> Check(const ExportOptions& options, const std::string& format) {
   if (const auto input = cad::CheckInput(options.load.file); !input) {
     return Unexpected(input.error());
   }
-  if (options.record.is_demonstrations && !IsHdf5(format)) {
-    return Fail(ErrorCode::kInvalid, "demonstrations are written as HDF5 only", name,
-                "end the file name with .h5");
+  if (options.record.is_demonstrations && !IsHdf5(format) && format != ".mcap") {
+    return Fail(ErrorCode::kInvalid, "demonstrations are written as HDF5 or MCAP only", name,
+                "end the file name with .h5 or .mcap");
   }
   if (IsRecord(options.load.file)) {
     if (!IsRecordFormat(format)) {

@@ -45,7 +45,7 @@ void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
                    "For a record: keep one of so many ticks of each hand (not for .glb)")
       ->check(CLI::Range(1, 1'000'000));
   command->add_flag("--demonstrations", selection->is_demonstrations,
-                    "Write an .h5 of demonstrations to learn from, in the layout of robomimic: of "
+                    "Write demonstrations to learn from, as .h5 in the layout of robomimic or as .mcap: of "
                     "a record each hold of a part, of a CAD file the planned way of each part");
 }
 

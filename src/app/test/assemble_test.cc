@@ -65,6 +65,28 @@ TEST(AssembleTest, GearPumpGoesTogetherCompletely) {  // N10
   }
 }
 
+// L: a nut is turned onto its bolt and tightened to the torque of VDI 2230-1, whatever the seed; the
+// record replays with it.
+TEST(AssembleTest, NutIsTurnedOntoItsBoltAndTightened) {
+  const TemporaryFolder folder;
+  const std::string record = (folder.path() / "nut.hvasrec").string();
+  for (const char* seed : {"1", "2", "3"}) {
+    const json run = RunHvasJson({"assemble", ProductFile("nut_bolt"), "--threads-turn", "--seed",
+                                  seed, "--record", record, "--force"});
+    ExpectAllSeated(run, 3);
+    const json& nut = run["parts"][2];
+    EXPECT_NEAR(nut["tightening_nm"].get<double>(), 24.5, 0.07 * 24.5) << seed;
+    EXPECT_GT(nut["preload_n"].get<double>(), 16e3) << seed;
+    EXPECT_LT(nut["arrival_urad"].get<double>(), 15e3) << seed;
+    EXPECT_EQ(run["parts"][1]["preload_n"], 0);
+    const json replay = RunHvasJson({"replay", record});
+    EXPECT_EQ(replay["digest"], run["digest"]) << replay.dump();
+  }
+  const json straight = RunHvasJson({"assemble", ProductFile("nut_bolt")});
+  ExpectAllSeated(straight, 3);
+  EXPECT_EQ(straight["parts"][2]["tightening_nm"], 0);
+}
+
 TEST(AssembleTest, OrderBeginsWithThePartsThatAreAskedFor) {
   const json run = RunHvasJson(
       {"assemble", ProductFile("gear_pump"), "--order", "driven gear shaft", "--limit", "20"}, 2);

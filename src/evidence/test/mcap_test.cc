@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
+#include "evidence/demonstrations.h"
 #include "evidence/tables.h"
 #include "evidence/test/evidence_fixture.h"
 #include "record/compression.h"
@@ -64,6 +65,10 @@ class McapTest : public testing::EvidenceTest {
  protected:
   void Write(int every) {
     ASSERT_TRUE(WriteMcap(&reader, {{}, every}, out / "x.mcap").has_value());
+    Read();
+  }
+
+  void Read() {
     bytes_ = testing::ReadAll(out / "x.mcap");
     const std::string magic("\x89MCAP0\r\n", 8);
     ASSERT_EQ(bytes_.substr(0, 8), magic);
@@ -117,6 +122,38 @@ TEST_F(McapTest, ItsMessagesAreInOrder) {
   EXPECT_EQ(counts["/hand0"], (ticks.size() + 9) / 10);
   EXPECT_EQ(counts["/tf"], counts["/hand0"]);
   EXPECT_EQ(counts["/events"], reader.ReadEvents()->size());
+}
+
+TEST_F(McapTest, DemonstrationsFollowEachOtherInTime) {
+  Demonstration way;
+  way.part = "rig/peg";
+  way.source = "plan";
+  way.is_seated = true;
+  for (int i = 0; i < 5; ++i) {
+    DemonstrationSample sample;
+    sample.t = 3 + 0.02 * i;
+    sample.X_WB = spatial::Pose(Vec3(0, 0, 1e-3 * (4 - i)));
+    way.samples.push_back(sample);
+  }
+  ASSERT_TRUE(WriteMcap({way, way}, out / "x.mcap").has_value());
+  Read();
+  ASSERT_FALSE(HasFatalFailure());
+  std::vector<std::uint64_t> times_ms;
+  for (const McapRecord& chunk : OfKind(0x06)) {
+    for (const McapRecord& record : ReadMcap(OpenChunk(chunk.content))) {
+      const json message = json::parse(record.content.substr(22));
+      if (!message.contains("demonstration")) {
+        ASSERT_EQ(message["transforms"][1]["child_frame_id"], "rig/peg");
+        continue;
+      }
+      times_ms.push_back(NumberAt<std::uint64_t>(record.content, 6) / 1'000'000);
+      const auto i = static_cast<double>((times_ms.size() - 1) % 5);
+      EXPECT_EQ(message["demonstration"], times_ms.size() > 5 ? 1 : 0);
+      EXPECT_NEAR(message["to_goal_m"], 1e-3 * (4 - i), 1e-12);
+    }
+  }
+  EXPECT_EQ(times_ms,
+            (std::vector<std::uint64_t>{0, 20, 40, 60, 80, 1080, 1100, 1120, 1140, 1160}));
 }
 
 TEST_F(McapTest, TimesAreFoundByItsIndex) {

@@ -1,5 +1,7 @@
 #include "fits/threads.h"
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -100,6 +102,28 @@ TEST(Threads, TighteningTorqueIsThatOfVdi2230) {
   const Thread& m8 = *FindThread(8e-3, 0);
   const Tightening smooth = CalcTightening(m8, 640e6, 0, 0, 10e-3);
   EXPECT_NEAR(smooth.torque * 2 * 3.14159265 / (smooth.preload * m8.pitch), 1, 0.01);
+}
+
+// ISO 965-1's table for M8 6H/6g: es -28 um, T_d2 118 um, T_D2 160 um. Its formulas are rounded there.
+TEST(Threads, FlankPlayIsThatOfTheTolerances) {
+  const double table = (28 + 0.5 * (118 + 160)) * std::tan(std::numbers::pi / 6);
+  EXPECT_NEAR(1e6 * CalcMeanFlankPlay(*FindThread(8e-3, 0)), table, 0.02 * table);
+  // M16: -38, 160, 212.
+  const double larger = (38 + 0.5 * (160 + 212)) * std::tan(std::numbers::pi / 6);
+  EXPECT_NEAR(1e6 * CalcMeanFlankPlay(*FindThread(16e-3, 0)), larger, 0.03 * larger);
+}
+
+// Limits of the closed form: a long screw is a rod, and what it clamps ever stiffer beside it.
+TEST(Threads, JointIsAsStiffAsARodWhereItIsLong) {
+  const Thread& m8 = *FindThread(8e-3, 0);
+  const double length = 2;
+  const double core = 0.25 * std::numbers::pi * m8.core_diameter() * m8.core_diameter();
+  const double screw = 210e9 * core / length;
+  const double shortened = CalcJointStiffness(m8, length);
+  EXPECT_LT(shortened, screw);
+  EXPECT_GT(shortened, 0.8 * screw);
+  // An M8 on 12 mm, by hand: screw 3.331e8 N/m, clamped 2.153e9 N/m.
+  EXPECT_NEAR(CalcJointStiffness(m8, 12e-3), 2.885e8, 0.003e8);
 }
 
 }  // namespace

@@ -6,104 +6,26 @@
 
 #include <gtest/gtest.h>
 
-#include "fits/insertion.h"
-#include "haptics/test/peg_rig.h"
+#include "haptics/test/led_peg.h"
 
 namespace hvas::haptics {
 namespace {
 
+using testing::CalcOnChamfer;
+using testing::CalcOnePoint;
+using testing::CalcTwoPoint;
+using testing::kCentre;
+using testing::kChamfer;
 using testing::kHoleDepth;
 using testing::kHoleRadius;
-using testing::kPair;
+using testing::kMu;
+using testing::kOffset;
 using testing::kPegLength;
 using testing::kPegRadius;
+using testing::kTilt;
 using testing::PegRig;
-
-constexpr double kMu = 0.2;
-constexpr double kCentre = 0.5 * kPegLength;  // Height of the centre of mass above the tip [m].
-constexpr double kOffset = 0.5e-3;            // How far the tip is led into the wall [m].
-constexpr double kTilt = 0.02;                // Of the hand [rad].
-
-/** In the plane of the tilt: forces of the hole on the peg, and the moment about its centre. */
-struct PlanarLoad {
-  double f_x{0}, f_z{0}, m{0};
-};
-
-/** A peg in the plane of its tilt, with the axis of the hole along z and the rim at z = 0. */
-struct PlanarPeg {
-  double x_tip, depth, tilt;
-
-  [[nodiscard]] Vec3 axis() const { return {std::sin(tilt), 0, std::cos(tilt)}; }
-
-  [[nodiscard]] Vec3 across() const { return {std::cos(tilt), 0, -std::sin(tilt)}; }
-
-  [[nodiscard]] Vec3 tip() const { return {x_tip, 0, -depth}; }
-
-  [[nodiscard]] Vec3 centre() const { return tip() + kCentre * axis(); }
-
-  /** Of a normal force of 1 N on the side at the rim, with friction against the motion inwards. */
-  [[nodiscard]] Vec3 ForceAtRim() const { return -across() + kMu * axis(); }
-
-  [[nodiscard]] double MomentAtRim() const {
-    return (Vec3(kHoleRadius, 0, 0) - centre()).cross(ForceAtRim()).y();
-  }
-};
-
-/** The hand's spring: where it leads the centre, and its tilt. */
-struct Spring {
-  double k_x, k_t;
-  double x;  ///< Of the centre that is led [m].
-
-  [[nodiscard]] double ForceOn(const PlanarPeg& peg) const { return k_x * (x - peg.centre().x()); }
-
-  [[nodiscard]] double MomentOn(const PlanarPeg& peg) const { return k_t * (kTilt - peg.tilt); }
-};
-
-/** The root of a function that rises or falls through zero once in between. */
-template <typename Function>
-double FindRoot(double low, double high, const Function& function) {
-  const bool rises = function(high) > 0;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    ((function(middle) > 0) == rises ? high : low) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-/** With its side on the rim, at a tilt. */
-PlanarPeg MakeOnRim(double depth, double tilt) {
-  return {kHoleRadius - (kPegRadius + depth * std::sin(tilt)) / std::cos(tilt), depth, tilt};
-}
-
-/** The equilibrium of a peg that slides in on one point, without small angles. */
-PlanarLoad CalcOnePoint(const Spring& spring, double depth) {
-  const auto force = [&](const PlanarPeg& peg) {
-    return -spring.ForceOn(peg) / peg.ForceAtRim().x();
-  };
-  const double tilt = FindRoot(-0.05, 0.1, [&](double t) {
-    const PlanarPeg peg = MakeOnRim(depth, t);
-    return spring.MomentOn(peg) + force(peg) * peg.MomentAtRim();
-  });
-  const PlanarPeg peg = MakeOnRim(depth, tilt);
-  const Vec3 f = force(peg) * peg.ForceAtRim();
-  return {f.x(), f.z(), force(peg) * peg.MomentAtRim()};
-}
-
-/** The forces of two sliding points on a peg whose pose they determine. */
-PlanarLoad CalcTwoPoint(const Spring& spring, double depth) {
-  const double tilt = FindRoot(1e-4, 0.9 * fits::CalcLargestTilt(kPair),
-                               [&](double t) { return fits::CalcTipDepth(kPair, t) - depth; });
-  const PlanarPeg peg{kPegRadius * std::cos(tilt) - kHoleRadius, depth, tilt};
-  const Vec3 at_tip(1, 0, kMu);
-  const double m_tip = (peg.tip() - kPegRadius * peg.across() - peg.centre()).cross(at_tip).y();
-  // tip * at_tip + rim * ForceAtRim() balances the spring, in x and about y.
-  const double f = -spring.ForceOn(peg);
-  const double m = -spring.MomentOn(peg);
-  const Vec3 at_rim = peg.ForceAtRim();
-  const double rim = (m - f * m_tip) / (peg.MomentAtRim() - at_rim.x() * m_tip);
-  const double tip = f - rim * at_rim.x();
-  return {f, kMu * tip + rim * at_rim.z(), m};
-}
+using testing::PlanarLoad;
+using testing::PlanarSpring;
 
 struct InsertionRig : PegRig {
   explicit InsertionRig(double depth) : PegRig(depth, kMu) {
@@ -117,7 +39,7 @@ struct InsertionRig : PegRig {
     return {F.f.x(), F.f.z(), F.t.y()};
   }
 
-  Spring spring{};
+  PlanarSpring spring{};
 };
 
 /** @param allowed  What of the largest force and moment of the insertion the two may differ by. */
@@ -161,6 +83,62 @@ TEST(InsertionForce, OneAndTwoPointsAsTheirEquilibriumSays) {
   }
   EXPECT_GE(one_point, 20);
   EXPECT_GE(two_points, 30);
+}
+
+// Crossing a chamfer by contact alone: the slope pushes the peg onto the axis.
+TEST(InsertionForce, ChamferIsCrossedAsItsEquilibriumSays) {
+  constexpr double kSpeed = 0.2e-3;   // [m/s]
+  constexpr double kAllowed = 1e-2;   // Of the force: dampers, and what a contact gives way.
+  constexpr double kBeside = 0.9e-3;  // Of the hand's path [m].
+  TickOptions options = testing::HardAndWeightless();
+  options.condition = Condition::kCollision;
+  options.contact.friction = {kMu, kMu};
+  testing::HeldRig rig(options);
+  using contact::testing::CylinderZ;
+  using contact::testing::PlaneAt;
+  const double mouth = kHoleRadius + kChamfer;
+  const spatial::Surface slope{spatial::SurfaceKind::kCone,
+                               Vec3(0, 0, kHoleDepth - mouth),
+                               Vec3::UnitZ(),
+                               0,
+                               std::atan(1.0),
+                               -1};
+  const auto hole = contact::testing::Build(contact::testing::Lathe(
+      {{{{kHoleRadius, 0}, {20e-3, 0}}, PlaneAt(0, -1)},
+       {{{20e-3, 0}, {20e-3, kHoleDepth}}, CylinderZ(20e-3, 1)},
+       {{{20e-3, kHoleDepth}, {mouth, kHoleDepth}}, PlaneAt(kHoleDepth, 1)},
+       {{{mouth, kHoleDepth}, {kHoleRadius, kHoleDepth - kChamfer}}, slope},
+       {{{kHoleRadius, kHoleDepth - kChamfer}, {kHoleRadius, 0}}, CylinderZ(kHoleRadius, -1)}},
+      contact::testing::Segments(kHoleRadius, 1e-6)));
+  const auto peg =
+      contact::testing::Build(contact::testing::Shaft(kPegRadius, kPegLength, 1e-6));
+  rig.scene.Add(hole, spatial::Pose());
+  rig.Place(peg, spatial::Pose(Vec3(kBeside, 0, kHoleDepth + 1e-3)));
+  testing::SetMass({{kPegRadius, 0, kPegLength}}, &rig.part);
+  rig.part.X_WB_goal = spatial::Pose(Vec3(0, 0, -1));
+  rig.Take();
+  rig.hand->Wait(0.3);
+  const PlanarSpring spring{rig.options.coupling.k_lin, rig.options.coupling.k_rot, kBeside};
+  rig.hand->MoveSoftly(Vec3(0, 0, -1.3e-3), 0.5);
+  int compared = 0;
+  double worst = 0;
+  while (rig.hand->pose().p().z() - kCentre > kHoleDepth - 0.75e-3) {
+    rig.hand->MoveEvenly(Vec3(0, 0, -0.02e-3), 0.02e-3 / kSpeed);
+    const double depth = kHoleDepth - rig.hand->last().X_WD.p().z();
+    if (rig.hand->last().contact_count == 0 || depth < 0.35e-3) {
+      continue;  // Not there yet, or still moving onto the slope.
+    }
+    ++compared;
+    const PlanarLoad expected = CalcOnChamfer(spring, depth);
+    const spatial::Wrench& felt = rig.hand->last().F_felt_W;
+    worst = std::max({worst, std::abs(felt.f.x() / expected.f_x - 1),
+                      std::abs(felt.f.z() / expected.f_z - 1)});
+    EXPECT_NEAR(felt.f.x(), expected.f_x, kAllowed * std::abs(expected.f_x)) << depth;
+    EXPECT_NEAR(felt.f.z(), expected.f_z, kAllowed * std::abs(expected.f_z)) << depth;
+    EXPECT_NEAR(felt.t.y(), expected.m, kAllowed * std::abs(expected.m)) << depth;
+  }
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_GT(compared, 8);
 }
 
 }  // namespace

@@ -147,6 +147,13 @@ class ScriptedHand {
     });
   }
 
+  /** One tick: to a place at once, turning at a rate [rad/s]. */
+  void LeadTo(const Vec3& p, const Vec3& w) {
+    const Vec3 v = (p - X_WH_.p()) / kDt;
+    X_WH_ = {(spatial::RotationFromVector(kDt * w) * X_WH_.q()).normalized(), p};
+    Tick({w, v});
+  }
+
   void Wait(double time) { MoveEvenly(Vec3::Zero(), time); }
 
   /** Follows a force instead of a path: a light hand that gives way, with nothing in its arm but a
