@@ -1,6 +1,6 @@
 // Force and moment of a peg that a spring leads into a hole beside the axis and tilted: felt in our
-// tick, and in MuJoCo, against the equilibrium with exact geometry. Quasi-static, one point of contact
-// and then two; the pair of haptics/test/insertion_force_test.cc.
+// tick, and in MuJoCo, against the equilibrium with exact geometry. Quasi-static, one point of
+// contact and then two; the pair of haptics/test/insertion_force_test.cc.
 //
 //     insertion_bench
 
@@ -23,10 +23,10 @@ using namespace hvas;                    // NOLINT: a program of one file.
 using namespace hvas::haptics;           // NOLINT
 using namespace hvas::haptics::testing;  // NOLINT
 
-constexpr double kSpeed = 1e-3;   // [m/s]
-constexpr double kLast = 34e-3;   // Deepest tip [m].
-constexpr double kEvery = 1e-3;   // Of depth between two comparisons [m].
-constexpr double kStart = 5e-3;   // [m]
+constexpr double kSpeed = 1e-3;  // [m/s]
+constexpr double kLast = 34e-3;  // Deepest tip [m].
+constexpr double kEvery = 1e-3;  // Of depth between two comparisons [m].
+constexpr double kStart = 5e-3;  // [m]
 
 /** Largest difference from the equilibrium, in shares of the largest of each. */
 struct Errors {
@@ -41,8 +41,10 @@ struct Errors {
   }
 
   void Print(const char* name) const {
-    fmt::print("{:24} one point {:2}, two {:2}: off by {:.2f} % across, {:.2f} % along, {:.2f} % of the moment\n",
-               name, one_point, two_points, 100 * f_x, 100 * f_z, 100 * m);
+    fmt::print(
+        "{:24} one point {:2}, two {:2}: off by {:.2f} % across, {:.2f} % along, {:.2f} % of the "
+        "moment\n",
+        name, one_point, two_points, 100 * f_x, 100 * f_z, 100 * m);
   }
 };
 
@@ -95,10 +97,9 @@ std::string MakeModel(int walls, const PlanarSpring& spring) {
     const double angle = 2 * std::numbers::pi * i / walls;
     constexpr double kWall = 4e-3;  // Half of its thickness [m].
     const double middle = kHoleRadius + kWall;
-    boxes += fmt::format(
-        "<geom type='box' size='{} {} {}' pos='{} {} {}' euler='0 0 {}'/>\n", kWall, half_width,
-        0.5 * kHoleDepth, middle * std::cos(angle), middle * std::sin(angle), -0.5 * kHoleDepth,
-        angle);
+    boxes += fmt::format("<geom type='box' size='{} {} {}' pos='{} {} {}' euler='0 0 {}'/>\n",
+                         kWall, half_width, 0.5 * kHoleDepth, middle * std::cos(angle),
+                         middle * std::sin(angle), -0.5 * kHoleDepth, angle);
   }
   // The hardest contacts that stay stable with this step.
   return fmt::format(
@@ -107,7 +108,7 @@ std::string MakeModel(int walls, const PlanarSpring& spring) {
       <default><geom friction='{} 0 0' condim='3' solref='0.0004 1' solimp='0.999 0.9999 0.00001'/></default>
       <worldbody>{}
       <body name='peg' pos='0 0 {}'><joint name='x' type='slide' axis='1 0 0' stiffness='{}' springref='{}' damping='20'/>
-      <joint name='z' type='slide' axis='0 0 1' damping='0'/>
+      <joint name='z' type='slide' axis='0 0 1' damping='600'/>
       <joint name='y' type='hinge' axis='0 1 0' stiffness='{}' springref='{}' damping='0.05'/>
       <geom type='cylinder' size='{} {}' mass='0.1'/></body></worldbody>
       <actuator><position joint='z' kp='1e6'/></actuator></mujoco>)",
@@ -132,7 +133,12 @@ Errors RunMuJoCo(int walls, const PlanarSpring& spring) {
   const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(model.get()), mj_deleteData);
   const double two_point = FindTwoPointDepth(spring);
   constexpr double kSettle = 0.5;  // [s] until it leans on the rim.
+  // Its contact chatters: from step to step the force is anything between none and twice what it is
+  // in the mean of a fifth of a second, which is what is compared.
+  constexpr double kMean = 0.2;  // [s]
   double next = kStart + kEvery;
+  std::array<double, 3> sum{};
+  int steps = 0;
   Errors errors;
   for (double depth = kStart; depth < kLast;) {
     const double led = kSpeed * std::max(0.0, data->time - kSettle);
@@ -140,10 +146,19 @@ Errors RunMuJoCo(int walls, const PlanarSpring& spring) {
     mj_step(model.get(), data.get());
     const double centre = kCentre - kStart + data->qpos[1];
     depth = kCentre * std::cos(data->qpos[2]) - centre;
-    if (data->time > kSettle && depth > next) {
+    if (data->time < kSettle || depth < next - kMean * kSpeed) {
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum[k] += data->qfrc_constraint[k];
+    }
+    ++steps;
+    if (depth > next) {
+      Compare({sum[0] / steps, sum[1] / steps, sum[2] / steps}, spring, next - 0.5 * kMean * kSpeed,
+              two_point, &errors);
       next += kEvery;
-      Compare({data->qfrc_constraint[0], data->qfrc_constraint[1], data->qfrc_constraint[2]}, spring,
-              depth, two_point, &errors);
+      sum = {};
+      steps = 0;
     }
   }
   return errors;
@@ -154,7 +169,7 @@ Errors RunMuJoCo(int walls, const PlanarSpring& spring) {
 int main() {
   const PlanarSpring spring = LedBy(CouplingGains().k_lin, CouplingGains().k_rot);
   RunOurs().Print("hvas");
-  for (const int walls : {16, 64, 256}) {
+  for (const int walls : {16, 64}) {
     RunMuJoCo(walls, spring).Print(fmt::format("MuJoCo, {} walls", walls).c_str());
   }
   return 0;

@@ -1,6 +1,6 @@
-/** A nut with modelled helices on its bolt in a scripted hand, by contact alone: five turns down and
- five up at one turn a second, pressed with 2 N. Advance of a turn, depth of contact and time of the
- tick, for each pair in a folder that has Factory's meshes (factory_nut_SIZE_subdiv_3x.obj and
+/** A nut with modelled helices on its bolt in a scripted hand, by contact alone: five turns down
+ and five up at one turn a second, pressed with 2 N. Advance of a turn, depth of contact and time of
+ the tick, for each pair in a folder that has Factory's meshes (factory_nut_SIZE_subdiv_3x.obj and
  factory_bolt_SIZE.obj, in metres).
 
      thread_bench FOLDER SIZE=PITCH_MM...      thread_bench factory m8_loose=1.25 m16_tight=2
@@ -109,7 +109,8 @@ void Measure(const std::filesystem::path& folder, const std::string& size, doubl
     return 100 * (leg.advanced / (leg.turned / hvas::units::kTurn) / pitch - 1);
   };
   fmt::print(
-      "{:10} turns {:.2f} down, {:.2f} up; advance off by {:+.2f} %, {:+.2f} %; deepest {:.1f} um; tick "
+      "{:10} turns {:.2f} down, {:.2f} up; advance off by {:+.2f} %, {:+.2f} %; deepest {:.1f} um; "
+      "tick "
       "median {:.0f}, p99 {:.0f}, p99.9 {:.0f}, max {:.0f} us\n",
       size, -down.turned / hvas::units::kTurn, up.turned / hvas::units::kTurn, off(down), off(up),
       1e6 * hvas::haptics::testing::CalcDeepest(rig.hand->samples), Quantile(times_us, 0.5),

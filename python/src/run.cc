@@ -11,8 +11,8 @@
 namespace hvas::python {
 namespace {
 
-using assembly::SteppedRun;
 using assembly::ContactRow;
+using assembly::SteppedRun;
 using assembly::TickRow;
 using simulation::Model;
 using ModelPtr = std::shared_ptr<const Model>;
@@ -192,8 +192,9 @@ py::object Describe(const simulation::PartResult& part, const Model& model) {
 
 py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
                     const std::vector<std::string>& devices, const std::string& condition,
-                    bool turns_threads, bool is_realtime, double limit_s, const std::filesystem::path& record,
-                    bool is_replaced, const py::object& on_part) {
+                    bool turns_threads, bool is_realtime, double limit_s,
+                    const std::filesystem::path& record, bool is_replaced,
+                    const py::object& on_part) {
   std::stop_source stop;
   assembly::RunOptions options;
   options.seed = seed;
@@ -382,10 +383,11 @@ void DefineRun(py::module_* module) {
            "cramped, reach, force, hand_time.")
       .def("assemble", &Assemble, py::arg("seed") = 1,
            py::arg("devices") = std::vector<std::string>{""}, py::arg("condition") = "hybrid",
-           py::arg("threads_turn") = false, py::arg("realtime") = false, py::arg("limit_s") = 0.0, py::arg("record") = "",
-           py::arg("replace") = false, py::arg("on_part") = py::none(),
+           py::arg("threads_turn") = false, py::arg("realtime") = false, py::arg("limit_s") = 0.0,
+           py::arg("record") = "", py::arg("replace") = false, py::arg("on_part") = py::none(),
            "Has a simulated person, or the user of a device, put every part in; in virtual time "
-           "unless realtime. threads_turn: screws and nuts go in by turning, and are tightened. on_part "
+           "unless realtime. threads_turn: screws and nuts go in by turning, and are tightened. "
+           "on_part "
            "is called with each hvas.types.PartResult.")
       .def("__repr__", [](const ModelHandle& handle) {
         return "<hvas.Model " + handle.model->product->source + ": " +
@@ -411,8 +413,8 @@ void DefineRun(py::module_* module) {
                     bool, double, double, double, double, double>(),
            py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
            py::arg("condition") = "hybrid", py::arg("contact_in_holes") = false,
-           py::arg("threads_turn") = false,            py::arg("stiffness") = arm.stiffness, py::arg("damping") = arm.damping,
-           py::arg("turn_stiffness") = arm.turn_stiffness,
+           py::arg("threads_turn") = false, py::arg("stiffness") = arm.stiffness,
+           py::arg("damping") = arm.damping, py::arg("turn_stiffness") = arm.turn_stiffness,
            py::arg("turn_damping") = arm.turn_damping, py::arg("rate_hz") = 1000.0)
       .def(
           "step",
@@ -433,13 +435,15 @@ void DefineRun(py::module_* module) {
           "copy what is to stay. Fields: t_s, X_WH (hand), X_WB (part), F_felt_W and F_true_W "
           "(force, "
           "then torque), p_WC and f_C_W (the contact that presses hardest), deepest, insertion, "
-          "axial_true, preload, tightening, offset, tilt, contacts, state (index into hvas.STATES).")
+          "axial_true, preload, tightening, offset, tilt, contacts, state (index into "
+          "hvas.STATES).")
       .def_property_readonly(
           "rows", [](const py::object& self) { return PythonRun::View(self); },
           "What the last step returned.")
       .def_property_readonly(
           "contacts", [](const py::object& self) { return PythonRun::ViewContacts(self); },
-          "All contacts that pressed on the part in the last tick, a view as rows are. Fields: p_WC, "
+          "All contacts that pressed on the part in the last tick, a view as rows are. Fields: "
+          "p_WC, "
           "f_C_W (force on the part), distance, other (occurrence; -1: none).")
       .def_property_readonly("seated", [](const PythonRun& run) { return run.run().is_seated(); })
       .def_property_readonly(

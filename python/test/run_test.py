@@ -125,7 +125,7 @@ class Run(unittest.TestCase):
         self.assertTrue(np.all(contacts["distance"] > -100e-6))
         held = contacts["f_C_W"].sum(axis=0)[2]
         self.assertGreater(held, 5)
-        self.assertAlmostEqual(row["F_true_W"][2], held - 9.81 * run.mass, delta=0.05)
+        self.assertAlmostEqual(row["F_true_W"][2], held - 9.81 * run.mass, delta=0.1)
 
     def test_a_hundred_runs_of_one_seed_have_the_same_digest(self):
         digests = set()

@@ -50,7 +50,8 @@ Hand MakeDeviceHand(const simulation::Model& model, device::OpenedDevice opened,
 
 Result<Hand> MakeHand(const simulation::Model& model, const HandOptions& options) {
   if (options.device.empty()) {
-    return MakePersonHand(model, MakePersonTick(options.render), {}, options.seed);
+    return MakePersonHand(model, MakePersonTick(options.render),
+                          simulation::MakeHabits(options.person, {}), options.seed);
   }
   auto opened = device::OpenAnyDevice(options.device, options.is_live);
   if (!opened) {

@@ -54,6 +54,7 @@ struct HandOptions {
   simulation::RenderOptions render;
   std::uint64_t seed{1};  ///< Seed of the simulated person.
   bool is_live{false};    ///< Runs in real time; no real device works without it.
+  simulation::PersonKind person{simulation::PersonKind::kCareful};
 };
 
 /** Opens the device, where one is asked for, and makes the hand that holds it, else the hand of a

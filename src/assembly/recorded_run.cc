@@ -42,6 +42,9 @@ Result<std::unique_ptr<record::Recorder>> MakeRunRecorder(const Model& model,
   meta["force_map"] = haptics::ToString(options.force_map);
   meta["device"] = options.devices.front();
   meta["second_device"] = options.devices.size() == 1 ? std::string() : options.devices.back();
+  if (options.person != simulation::PersonKind::kCareful) {
+    meta["person"] = simulation::ToString(options.person);
+  }
   return MakeRecorder(model, recorder, meta);
 }
 
@@ -50,7 +53,7 @@ Result<std::vector<Hand>> MakeHands(const Model& model, const RunOptions& option
   for (const std::string& device : options.devices) {
     auto hand =
         MakeHand(model, {device, options.render, simulation::SeedOfHand(options.seed, hands.size()),
-                         options.is_realtime});
+                         options.is_realtime, options.person});
     if (!hand) {
       return Unexpected(hand.error());
     }

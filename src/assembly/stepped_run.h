@@ -56,9 +56,9 @@ struct TickRow {
 /** A contact that presses on the part, in plain numbers, in W. */
 struct ContactRow {
   double p_WC[3]{};
-  double f_C_W[3]{};      ///< Force on the part [N].
-  double distance{0};     ///< Before the tick; negative inside [m].
-  std::int32_t other{-1}; ///< OccurrenceId of the part that it is with; -1: none.
+  double f_C_W[3]{};       ///< Force on the part [N].
+  double distance{0};      ///< Distance before the tick; negative inside [m].
+  std::int32_t other{-1};  ///< OccurrenceId of the part that it is with; -1: none.
 };
 
 /** An assembly that a program runs tick by tick in virtual time, with a hand that it leads itself:

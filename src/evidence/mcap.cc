@@ -133,15 +133,14 @@ Result<void> WriteMcap(const std::vector<Demonstration>& demonstrations,
     const Demonstration& demonstration = demonstrations[i];
     for (const DemonstrationSample& sample : demonstration.samples) {
       t_ns = begin_ns + std::llround(1e9 * (sample.t - demonstration.samples.front().t));
-      const Json message{
-          {"demonstration", i},
-          {"part", demonstration.part},
-          {"source", demonstration.source},
-          {"seated", demonstration.is_seated},
-          {"t_s", sample.t},
-          {"to_goal_m", (sample.X_WB.p() - demonstration.X_WB_goal.p()).norm()},
-          {"felt_n", sample.F_felt_W.f.norm()},
-          {"insertion_mm", 1e3 * sample.insertion}};
+      const Json message{{"demonstration", i},
+                         {"part", demonstration.part},
+                         {"source", demonstration.source},
+                         {"seated", demonstration.is_seated},
+                         {"t_s", sample.t},
+                         {"to_goal_m", (sample.X_WB.p() - demonstration.X_WB_goal.p()).norm()},
+                         {"felt_n", sample.F_felt_W.f.norm()},
+                         {"insertion_mm", 1e3 * sample.insertion}};
       writer.Add(samples, t_ns, Dump(message));
       Json list = Json::array();
       list.push_back(MakeTransform(t_ns, "hand", sample.X_WH));

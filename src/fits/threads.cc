@@ -122,7 +122,8 @@ Tightening CalcTightening(const Thread& thread, double yield_stress, double mu_t
 double CalcMeanFlankPlay(const Thread& thread) {
   const double pitch_mm = units::ToMm(thread.pitch);
   const double allowance_um = 15 + 11 * pitch_mm;
-  const double screw_um = 90 * std::pow(pitch_mm, 0.4) * std::pow(units::ToMm(thread.diameter), 0.1);
+  const double screw_um =
+      90 * std::pow(pitch_mm, 0.4) * std::pow(units::ToMm(thread.diameter), 0.1);
   const double nut_um = 1.32 * screw_um;
   const double play = 1e-6 * (allowance_um + 0.5 * (screw_um + nut_um));
   return play * std::tan(std::numbers::pi / 6);
@@ -135,9 +136,10 @@ double CalcJointStiffness(const Thread& thread, double clamped) {
   const double shank = 0.25 * std::numbers::pi * d * d;
   const double screw =
       (0.5 * d / shank + clamped / core + 0.5 * d / core + 0.4 * d / shank) / kModulus;
-  constexpr double kTan30 = 0.5774;
-  const double cones = kTan30 * std::numbers::pi * kModulus * d /
-                       (2 * std::log(5 * (kTan30 * clamped + 0.5 * d) / (kTan30 * clamped + 2.5 * d)));
+  constexpr double kTan30 = 0.5774;  // As the equation has it.
+  const double cones =
+      kTan30 * std::numbers::pi * kModulus * d /
+      (2 * std::log(5 * (kTan30 * clamped + 0.5 * d) / (kTan30 * clamped + 2.5 * d)));
   return 1 / (screw + 1 / cones);
 }
 

@@ -65,16 +65,16 @@ struct Tightening {
 [[nodiscard]] Tightening CalcTightening(const Thread& thread, double yield_stress, double mu_thread,
                                         double mu_head, double head_diameter);
 
-/** Axial play between the flanks of a thread with tolerances 6H/6g in the middle of their zones [m]:
- the play of the pitch diameters times tan 30 deg. Tolerances by the formulas of ISO 965-1, with P and
- d in mm: es = -(15 + 11 P) um, T_d2(6) = 90 P^0.4 d^0.1 um, T_D2(6) = 1.32 T_d2(6). Unified threads
- of class 2A/2B have about the same. */
+/** Axial play between the flanks of a thread with tolerances 6H/6g in the middle of their zones
+ [m]: the play of the pitch diameters times tan 30 deg. Tolerances by the formulas of ISO 965-1,
+ with P and d in mm: es = -(15 + 11 P) um, T_d2(6) = 90 P^0.4 d^0.1 um, T_D2(6) = 1.32 T_d2(6).
+ Unified threads of class 2A/2B have about the same. */
 [[nodiscard]] double CalcMeanFlankPlay(const Thread& thread);
 
 /** Stiffness along the axis of a steel screw together with what it clamps [N/m]. The screw by VDI
  2230-1: half a diameter of the head, all of the clamped length as threaded, half a diameter of the
- engaged thread and 0.4 of the nut. Clamped steel as two cones of 30 deg from a head of 1.5 diameters
- (Shigley's Mechanical Engineering Design, equation 8-22):
+ engaged thread and 0.4 of the nut. Clamped steel as two cones of 30 deg from a head of 1.5
+ diameters (Shigley's Mechanical Engineering Design, equation 8-22):
 
    k = 0.5774 pi E d / (2 ln(5 (0.5774 l + 0.5 d) / (0.5774 l + 2.5 d))).
 

@@ -147,8 +147,8 @@ class ContactStep {
     return std::exchange(account_, ContactAccount());
   }
 
-  /** Contacts that pressed on the held part in the last tick, but for those with the other hand's part
-   that its step has solved. */
+  /** Contacts that pressed on the held part in the last tick, but for those with the other hand's
+   part that its step has solved. */
   [[nodiscard]] std::span<const PressingContact> pressing() const noexcept {
     return {pressing_.data(), pressing_count_};
   }

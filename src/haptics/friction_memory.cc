@@ -105,9 +105,12 @@ bool FrictionMemory::AddContact(const contact::Contact& c, ConstraintSolver::Con
 }
 
 void FrictionMemory::EndTick(const ConstraintSolver& solver, double dt) noexcept {
+  const auto patch_count = static_cast<std::size_t>(solver.patch_count());
+  if (patch_count == 0) {
+    return;  // As in most ticks: room for the fits is not even cleared.
+  }
   std::array<Fit, kMaxPairs> fits;
   std::array<double, kMaxPairs> z_max{};
-  const auto patch_count = static_cast<std::size_t>(solver.patch_count());
   for (std::size_t k = 0; k < patch_count; ++k) {
     Pair& pair = pairs_[pair_of_patch_[k]];
     pair.load = 0;

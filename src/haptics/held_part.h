@@ -29,7 +29,7 @@ struct MateFaces {
 /** A threaded joint of the held part, as the hand feels it. */
 struct HeldThread {
   double lead{0};            ///< Advance of a turn; negative: left-handed [m].
-  double play{0};            ///< Between the flanks, along the axis [m].
+  double play{0};            ///< Axial play between the flanks [m].
   double pitch_diameter{0};  ///< d2 [m]
   double friction{0};        ///< mu of the thread, and under the head.
   double running_torque{0};  ///< Torque that it takes to turn it without load [N m].

@@ -9,7 +9,7 @@ namespace {
 constexpr double kSeatTolerance = 50e-6;  // [m]; no deeper on the last bit into place
 // Angle before its place at which a screw is tight [rad]: 3 % of that of an M8 on 12 mm. A choice.
 constexpr double kTight = 5e-3;
-constexpr double kLeaveFactor = 2;        // of the limits of being seated, to be out of place
+constexpr double kLeaveFactor = 2;  // of the limits of being seated, to be out of place
 
 double MinimumJerk(double s) noexcept {
   return s * s * s * (10 + s * (-15 + 6 * s));

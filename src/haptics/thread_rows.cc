@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "base/units.h"
 #include "haptics/fit_rows.h"
 
 namespace hvas::haptics {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kFlankAngle = 1.155;  // 1 / cos 30 deg: the flanks of a profile of 60 deg.
-// Leads of thread that are in before both flanks hold; less is the ramp of the first turn. A choice.
+// Leads of thread that are in before both flanks hold; less is the ramp of the first turn. A
+// choice.
 constexpr double kLeadIn = 2;
 constexpr double kCrossedTurn = 0.5;  // Turns that a crossed thread goes on for: a choice.
 
 /** Angle in (-pi, pi] by which q is turned about a unit vector. */
 double CalcTwist(const Quat& q, const Vec3& axis) noexcept {
-  return std::remainder(2 * std::atan2(q.vec().dot(axis), q.w()), kTurn);
+  return std::remainder(2 * std::atan2(q.vec().dot(axis), q.w()), units::kTurn);
 }
 
 }  // namespace
@@ -56,12 +56,12 @@ ThreadRows::Load ThreadRows::CalcLoad(double angle) const noexcept {
   return load;
 }
 
-// The turn at which the part is counts from its place, over whole turns: the helix is the nearest one
-// that it has not passed.
+// The turn at which the part is counts from its place, over whole turns: the helix is the nearest
+// one that it has not passed.
 void ThreadRows::Enter(double z, double turn) noexcept {
   is_in_ = true;
   const double most = (z + 0.5 * thread_.play) / rise_ + CalcHeadAngle();
-  angle_ = turn + kTurn * std::floor((most - turn) / kTurn);
+  angle_ = turn + units::kTurn * std::floor((most - turn) / units::kTurn);
   entry_angle_ = angle_;
   flank_force_ = stretch_ = 0;
 }
@@ -73,7 +73,7 @@ void ThreadRows::Add(const DisplayedPart& displayed, const HeldMate& mate,
   const HeldPart& part = *displayed.part;
   thread_ = *mate.thread;
   dt_ = dt;
-  rise_ = std::abs(thread_.lead) / kTurn;
+  rise_ = std::abs(thread_.lead) / units::kTurn;
   sense_ = thread_.lead < 0 ? -1 : 1;
   const bool is_out = geometry.way_W.dot(part.insertion_W) <= 0;
   out_W_ = is_out ? geometry.way_W : Vec3(-geometry.way_W);
@@ -86,7 +86,7 @@ void ThreadRows::Add(const DisplayedPart& displayed, const HeldMate& mate,
   const double turn =
       sense_ * CalcTwist(displayed.X_WD.q() * part.X_WB_goal.q().conjugate(), out_W_);
   if (is_in_) {
-    angle_ += std::remainder(turn - angle_, kTurn);
+    angle_ += std::remainder(turn - angle_, units::kTurn);
   } else {
     Enter(z, turn);
     is_crossed_ = std::tan(geometry.angle) > 0.5 * std::abs(thread_.lead) / thread_.pitch_diameter;
@@ -106,15 +106,14 @@ void ThreadRows::AddFlanks(double z, double depth, const Vec3& p_CmQ_W,
   const double most = contact.max_depth / contact.compliance;
   Vec6 J;
   J << p_CmQ_W.cross(out_W_) - sense_ * follows * out_W_, out_W_;
-  inner_row_ = solver->AddBoundedRow(
-      J, {0, most, z - helix + 0.5 * thread_.play, 1 / contact.compliance});
+  inner_row_ =
+      solver->AddBoundedRow(J, {0, most, z - helix + 0.5 * thread_.play, 1 / contact.compliance});
   // It opens by open / kLeadIn for each lead that the part comes out, while the mouth is near.
   const double opening = still_out > 0 ? open / (kLeadIn * lead) : 0;
   J.tail<3>() -= opening * out_W_;
   J.head<3>() -= opening * p_CmQ_W.cross(out_W_);
   outer_row_ = solver->AddBoundedRow(
-      J,
-      {-most, 0, z - helix - 0.5 * thread_.play - open * still_out, 1 / contact.compliance});
+      J, {-most, 0, z - helix - 0.5 * thread_.play - open * still_out, 1 / contact.compliance});
 }
 
 void ThreadRows::AddTorque(ConstraintSolver* solver) noexcept {
@@ -128,15 +127,15 @@ void ThreadRows::AddTorque(ConstraintSolver* solver) noexcept {
   if (load.slope > 0) {
     solver->AddAngularSpring(spring_felt_ * axis_W, slope_felt_ * axis_W * axis_W.transpose());
   }
-  const bool is_stuck = is_crossed_ && entry_angle_ - angle_ > kCrossedTurn * kTurn;
+  const bool is_stuck = is_crossed_ && entry_angle_ - angle_ > kCrossedTurn * units::kTurn;
   const double most =
       is_stuck ? std::numeric_limits<double>::infinity() : ToFelt(load.spring + load.friction);
   const double radius = 0.5 * thread_.pitch_diameter;
   Vec6 J;
   J << axis_W, Vec3::Zero();
-  torque_row_ = solver->AddBoundedRow(J, {ToFelt(load.spring - load.friction) - spring_felt_,
-                                          most - spring_felt_, stretch_,
-                                          FitRows::kBristle * radius * radius});
+  torque_row_ = solver->AddBoundedRow(
+      J, {ToFelt(load.spring - load.friction) - spring_felt_, most - spring_felt_, stretch_,
+          FitRows::kBristle * radius * radius});
 }
 
 ThreadForces ThreadRows::Finish(const ConstraintSolver& solver) noexcept {
@@ -144,8 +143,7 @@ ThreadForces ThreadRows::Finish(const ConstraintSolver& solver) noexcept {
   if (torque_row_ < 0) {
     return forces;
   }
-  flank_force_ =
-      std::max(solver.bounded_force(inner_row_), -solver.bounded_force(outer_row_));
+  flank_force_ = std::max(solver.bounded_force(inner_row_), -solver.bounded_force(outer_row_));
   const double radius = 0.5 * thread_.pitch_diameter;
   const double friction = solver.bounded_force(torque_row_);
   stretch_ = -friction / (FitRows::kBristle * radius * radius);

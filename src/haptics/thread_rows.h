@@ -10,7 +10,7 @@ namespace hvas::haptics {
 
 /** What a thread does to the held part in one tick, along and about the way out of it. */
 struct ThreadForces {
-  double torque_true{0};  ///< Of friction and of the clamped parts, counter-clockwise [N m].
+  double torque_true{0};  ///< Torque of friction and clamped parts, counter-clockwise [N m].
   double torque_felt{0};
   double preload{0};  ///< Force in the screw behind its head at the end of the step [N].
 };
@@ -24,10 +24,11 @@ struct ThreadForces {
 
  With z the distance of the part from its place along the way out, and u the angle about it in which
  it comes out, the helix is at c(u) = h max(u - u_head, 0), h = |lead| / (2 pi): the drawn place is
- that of the tightened part, whose head has rested since u_head = F_M / (k h). A flank holds the part
- where z < c - play / 2, the other one where z > c + play / 2. At the mouth, where two leads of
- thread are not in yet, the first flank alone leads, and the other one comes nearer by and by: a part
- that is pressed on and turned backwards rises on it, and drops by a lead where the thread begins.
+ that of the tightened part, whose head has rested since u_head = F_M / (k h). A flank holds the
+ part where z < c - play / 2, the other one where z > c + play / 2. At the mouth, where two leads of
+ thread are not in yet, the first flank alone leads, and the other one comes nearer by and by: a
+ part that is pressed on and turned backwards rises on it, and drops by a lead where the thread
+ begins.
 
  A part that comes in so tilted that one side of its first turn is in the next groove, tan(tilt) >
  P / (2 d2), turns for half a turn and then sticks: the thread is crossed until the part is out.

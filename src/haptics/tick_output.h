@@ -45,7 +45,7 @@ struct TickContext {
 struct PressingContact {
   Vec3 p_WC{Vec3::Zero()};
   Vec3 f_C_W{Vec3::Zero()};  ///< Its force on the held part [N].
-  double distance{0};        ///< Before the step; negative inside [m].
+  double distance{0};        ///< Distance before the step; negative inside [m].
   contact::BodyId body;      ///< The body that it is with; invalid for the ground or none.
 };
 

@@ -77,8 +77,8 @@ ThreadJoint MakeJoint(const product::Product& product, const Mate& mate) {
     joint.pitch = joint.is_modelled ? joint.pitch : joint.thread->pitch;
     joint.hole = fits::ClassifyThreadHole(*joint.thread, 2 * mate.hole_radius);
     if (joint.kind == ThreadJointKind::kThreaded) {
-      joint.tightening = fits::CalcTightening(*joint.thread, kYieldStress, kThreadFriction, kThreadFriction,
-                                              kHeadContact * joint.diameter);
+      joint.tightening = fits::CalcTightening(*joint.thread, kYieldStress, kThreadFriction,
+                                              kThreadFriction, kHeadContact * joint.diameter);
     }
   }
   joint.turns = joint.pitch > 0 ? joint.engaged / joint.pitch : 0;

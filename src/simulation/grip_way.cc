@@ -9,7 +9,8 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kTurningShare = 0.2;  // Of the travel: where less of it is distance, it turns. A choice.
+constexpr double kTurningShare =
+    0.2;  // Of the travel: where less of it is distance, it turns. A choice.
 
 }  // namespace
 

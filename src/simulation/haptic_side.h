@@ -58,7 +58,8 @@ class HapticSide {
   [[nodiscard]] std::size_t hand_count() const { return hands_.size(); }
 
   /** Contacts that pressed on what a hand holds in its last tick. RT-safe. */
-  [[nodiscard]] std::span<const haptics::PressingContact> pressing(std::size_t hand) const noexcept {
+  [[nodiscard]] std::span<const haptics::PressingContact> pressing(
+      std::size_t hand) const noexcept {
     return hands_[hand].tick.pressing();
   }
 

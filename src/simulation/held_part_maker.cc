@@ -102,8 +102,7 @@ std::optional<double> FindClampedLength(const haptics::HeldPart& held,
   std::optional<double> least;
   for (const haptics::HeldMate& mate : held.mates) {
     if (mate.is_stop) {
-      const double to_middle =
-          std::abs((in_place.p_WQ - mate.X_WM.p()).dot(in_place.way_W));
+      const double to_middle = std::abs((in_place.p_WQ - mate.X_WM.p()).dot(in_place.way_W));
       const double clamped =
           std::max(to_middle - 0.5 * in_place.engaged, kLeast * 2 * thread.radius);
       least = std::min(least.value_or(clamped), clamped);

@@ -60,7 +60,7 @@ struct ModelMate {
   std::shared_ptr<const haptics::MateFaces> faces_a;
   std::shared_ptr<const haptics::MateFaces> faces_b;
   std::shared_ptr<const fits::FitForce> fit;  ///< Null for planes and threads.
-  /** Of the same mate; null where it has no thread. */
+  /** The joint, where the mate is a thread; else null. */
   std::shared_ptr<const mates::ThreadJoint> thread;
 };
 

@@ -80,6 +80,25 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
          std::none_of(step.members.begin(), step.members.end(), has_axis);
 }
 
+bool PartRun::HasOnlyPlay(const SequenceStep& step) const {
+  const Model& model = this->model();
+  bool has_any = false;
+  for (const product::MateId mate_id : model.mates_of[step.occurrence.index()]) {
+    const product::Mate& mate = model.product->mates[mate_id.index()];
+    const OccurrenceId other =
+        mate.a.occurrence == step.occurrence ? mate.b.occurrence : mate.a.occurrence;
+    const fits::FitForce* fit = model.mates[mate_id.index()].fit.get();
+    if (physics().placement(other) != Placement::kPlaced || fit == nullptr) {
+      continue;
+    }
+    if (fit->CalcRadialPlay(fit->length()) <= 0) {
+      return false;
+    }
+    has_any = true;
+  }
+  return has_any;
+}
+
 bool PartRun::HasNothingToMove(const SequenceStep& step) const {
   const Placement placement = physics().placement(step.occurrence);
   return IsWithinProduct(step.kind) && placement != Placement::kHeld &&
@@ -121,6 +140,7 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) {
     task.extraction_W = task.way->outward_W();
     task.engage_distance = task.way->length();
   }
+  task.has_play = simulation_->options().guidance.contact_in_holes && HasOnlyPlay(step);
   task.is_guided_by_planes = !task.takes_out && IsGuidedByPlanes(step);
   task.centre_W = model.centre_W;
   task.transfer_radius = model.transfer_radius;

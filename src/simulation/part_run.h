@@ -140,10 +140,12 @@ class PartRun : public Sink {
   [[nodiscard]] std::string DescribeHardest(const HoldMetrics& metrics) const;
   /** Whether no mate with a part in its place but planes guides what moves in a step. */
   [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
+  /** Whether all fits of a part with parts in their places have play. */
+  [[nodiscard]] bool HasOnlyPlay(const SequenceStep& step) const;
   /** Whether a part that a step moves within the product is not where the step begins. */
   [[nodiscard]] bool HasNothingToMove(const SequenceStep& step) const;
-  /** The way of what moves in a step; empty where it is straight. A thread's is a helix where threads
-   turn. */
+  /** The way of what moves in a step; empty where it is straight. A thread's is a helix where
+   threads turn. */
   [[nodiscard]] sweep::Path WayOf(const SequenceStep& step);
   /** The task of a person who puts in or takes out what moves in a step. */
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);

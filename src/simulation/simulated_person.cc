@@ -40,6 +40,30 @@ double MinimumJerk(double s) {
 
 }  // namespace
 
+const char* ToString(PersonKind kind) noexcept {
+  switch (kind) {
+    case PersonKind::kCareful:
+      return "careful";
+    case PersonKind::kHasty:
+      return "hasty";
+    case PersonKind::kStiff:
+      return "stiff";
+  }
+  return "?";
+}
+
+PersonOptions MakeHabits(PersonKind kind, PersonOptions careful) noexcept {
+  if (kind == PersonKind::kHasty) {
+    constexpr double kFaster = 3;  // A choice.
+    careful.insert_speed *= kFaster;
+    careful.first_push = careful.push_limit;
+    careful.careful_push = careful.push_limit;
+    careful.light_push = careful.push_limit;
+  }
+  careful.gives_way = kind != PersonKind::kStiff;
+  return careful;
+}
+
 SimulatedPerson::SimulatedPerson(const PersonOptions& options, std::uint64_t seed,
                                  const spatial::Pose& X_WH)
     : options_(options), random_(seed), X_WH_(X_WH), p_ref_(X_WH.p()), q_ref_(X_WH.q()) {

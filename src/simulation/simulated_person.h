@@ -27,7 +27,11 @@ struct PersonTask {
   double engage_distance{0};         ///< [m] from the goal, where insertion begins.
   /** The way of the grip where it is not straight; outlives the task. Null: straight. */
   const GripWay* way{nullptr};
-  bool is_threaded{false};  ///< The way is that of its thread: it is turned along it, and no slot found.
+  bool is_threaded{
+      false};  ///< The way is that of its thread: it is turned along it, and no slot found.
+  /** It has play in its hole, and touches it there: it may stick in it tilted, and pressing harder
+   wedges it. */
+  bool has_play{false};
   /** Only planes guide it: what they leave free the eye has to find. */
   bool is_guided_by_planes{false};
   /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;
@@ -65,7 +69,22 @@ struct PersonOptions {
   double push_rate{6};         ///< How fast it presses harder [N/s].
   double most_stretch{0.012};  ///< The hand goes no further than the part it holds [m].
   double patience_s{25};       ///< Time spent on one part, from the beginning of insertion [s].
+  /** The wrist gives way to what it feels; without, it holds on to what it aims at, as a stiff
+   arm of a robot does. */
+  bool gives_way{true};
 };
+
+/** Ways to work. */
+enum class PersonKind : std::uint8_t {
+  kCareful,  ///< That of PersonOptions.
+  kHasty,    ///< Three times as fast on the way in, and presses as hard as it may at once.
+  kStiff,    ///< Careful, but gives way to nothing.
+};
+
+[[nodiscard]] const char* ToString(PersonKind kind) noexcept;
+
+/** Habits for a way to work, from those of a careful person. */
+[[nodiscard]] PersonOptions MakeHabits(PersonKind kind, PersonOptions careful) noexcept;
 
 /** Where a person wants the hand to be, and what else it does; the hand is drawn there by the arm's
  impedance. */
@@ -217,6 +236,11 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void Rock(const Vec3& d, bool is_slow) noexcept;
   /** Whether the part is felt to be held by more than the hand may have its load wrong. */
   [[nodiscard]] bool FeelsTouch(const OperatorInput& input) const noexcept;
+  /** Gives way across the way in to a hole that holds the part on its axis, until it feels no force
+   and no torque there. */
+  void YieldToHole(const OperatorInput& input, const Vec3& d) noexcept;
+  /** Whether the part is felt to be held beside the way, or tilted. */
+  [[nodiscard]] bool FeelsAside(const OperatorInput& input, const Vec3& d) const noexcept;
   /** Gives way across the way in, and in how it is turned, to what holds the hand back. */
   void YieldToTouch(const Vec3& d) noexcept;
   /** Whether the part is further in than it ever was on this try. */

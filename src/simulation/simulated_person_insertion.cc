@@ -41,10 +41,14 @@ constexpr double kErrorsOfEye = 3;       // Standard deviations of what it sees
 constexpr double kYieldTurn = 0.05;      // [rad]
 constexpr double kSearchPitch = 0.5e-3;  // [m] of radius a try
 constexpr double kEyePitch = 0.25;       // Of the error of a close look, the same by eye
-constexpr double kLeadOnWay = 1e-3;  // [m] that the hand goes before the part on a way that bends
-constexpr double kTwist = 0.1;       // [rad] that the hand turns a screw ahead of where it is
-constexpr double kNearer = 0.05e-3;  // [m] of travel that count as coming on
-constexpr double kNotNearer = 2;     // [s] until whoever sees the way tries anew
+constexpr double kLeadOnWay = 1e-3;    // [m] that the hand goes before the part on a way that bends
+constexpr double kTwist = 0.1;         // [rad] that the hand turns a screw ahead of where it is
+constexpr double kYieldToHole = 6e-3;  // [m] at most to a hole that has the part on its axis
+constexpr double kLeastAside = 0.1;    // [N] across the way that is felt, in a careful hand
+constexpr double kLeastTwist = 4e-3;   // [N m], the same
+constexpr double kGivesWayFirst = 2;   // [s] until what sticks in a hole with play is rocked, too
+constexpr double kNearer = 0.05e-3;    // [m] of travel that count as coming on
+constexpr double kNotNearer = 2;       // [s] until whoever sees the way tries anew
 constexpr double kLeadWhenStuck = 2e-3;  // [m/s] more of it while the part is stuck
 
 void LimitLength(double most, Vec3* v) {
@@ -96,10 +100,13 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   // and gives way inside.
   const bool has_more_to_meet = task_.is_guided_by_planes || task_.way != nullptr;
   const bool is_by_eye = input.sees_part && (!is_guided_ || has_more_to_meet);
-  const bool is_careful = is_by_eye && (search_count_ > 0 || HasSlotToFind());
+  // What would wedge in its hole is pressed lightly, too.
+  const bool is_by_touch = is_guided_ && task_.has_play;
+  const bool is_led_by_hole = is_by_touch && options_.gives_way;
+  const bool is_careful = (is_by_eye && (search_count_ > 0 || HasSlotToFind())) || is_led_by_hole;
   const bool is_watched = is_by_eye || (is_at_device_ && input.sees_part);
   const double travel = is_watched ? seen_travel : hand_travel;
-  const bool is_inside = is_by_eye && travel < task_.engage_distance - kLeadIn;
+  const bool is_inside = (is_by_eye || is_by_touch) && travel < task_.engage_distance - kLeadIn;
   if (is_backing_off_) {
     nearest_travel_ = std::numeric_limits<double>::infinity();
     since_nearer_s_ = 0;
@@ -124,7 +131,12 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
       FollowWayByEye(input, d);
     }
     const double lead = LeadOf(input);
-    travel_ = std::max(travel_ - wanted_speed * dt_, hand_travel - lead);
+    if (is_led_by_hole) {
+      YieldToHole(input, d);
+    }
+    // The mate has it on the axis: the hand comes there, too, before it goes in.
+    const bool is_waiting = is_led_by_hole && !is_inside && FeelsAside(input, d);
+    travel_ = std::max(travel_ - (is_waiting ? 0 : wanted_speed * dt_), hand_travel - lead);
     // The device may give way where the part does not: the eye tells.
     const double stretch = seen_travel - hand_travel - grip_offset_W_.dot(d);
     const bool is_left_behind = input.sees_part && stretch > options_.most_stretch;
@@ -134,7 +146,8 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
     travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
     since_nearer_s_ = task_.way == nullptr || IsNearer(travel) ? 0 : since_nearer_s_ + dt_;
     const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : speed >= kStillSpeed;
-    const bool is_stuck = is_left_behind || (!is_coming && (is_careful || IsPressing(input)));
+    const bool is_stuck =
+        !is_waiting && (is_left_behind || (!is_coming && (is_careful || IsPressing(input))));
     stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
     if (input.sees_part && seen_travel < -kStandOff) {
       StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
@@ -144,10 +157,12 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
                    (is_careful && is_inside && !IsLedByEye() ? kRockingTime : kStuckBeforeSearch)) {
       StartSearch(d, travel, is_by_eye);
     } else if (is_careful && is_inside) {
-      if ((task_.way == nullptr || is_slow) && FeelsTouch(input)) {
+      if (!is_led_by_hole && (task_.way == nullptr || is_slow) && FeelsTouch(input)) {
         YieldToTouch(d);  // On a way that turns, what comes behind the hand meets nothing yet.
       }
-      Rock(d, is_slow);
+      if (!is_by_touch || stuck_time_s_ > kGivesWayFirst) {
+        Rock(d, is_slow);
+      }
     }
   }
   const spatial::Pose X_WG = WayAt(travel_);
@@ -247,9 +262,30 @@ bool SimulatedPerson::FeelsTouch(const OperatorInput& input) const noexcept {
   return CalcAddedForce(input) > std::max(kLeastTouch, kTouchOfLoad * carried_force_.norm());
 }
 
+void SimulatedPerson::YieldToHole(const OperatorInput& input, const Vec3& d) noexcept {
+  // By the force alone, until there is none: a load that was learned wrong bends the arm as well.
+  const Quat& q_WD = input.workspace.X_WD.q();
+  const Vec3 aside = q_WD * input.F_H_D.f / options_.stiffness;
+  const Vec3 turned = q_WD * input.F_H_D.t / options_.turn_stiffness;
+  yield_offset_ += dt_ / kYieldTime * (aside - aside.dot(d) * d);
+  yield_turn_ += dt_ / kYieldTime * (turned - turned.dot(d) * d);
+  LimitLength(kYieldToHole, &yield_offset_);
+  LimitLength(kYieldTurn, &yield_turn_);
+}
+
+bool SimulatedPerson::FeelsAside(const OperatorInput& input, const Vec3& d) const noexcept {
+  const Quat& q_WD = input.workspace.X_WD.q();
+  const Vec3 f = q_WD * input.F_H_D.f;
+  const Vec3 t = q_WD * input.F_H_D.t;
+  return (f - f.dot(d) * d).norm() > kLeastAside || (t - t.dot(d) * d).norm() > kLeastTwist;
+}
+
 void SimulatedPerson::YieldToTouch(const Vec3& d) noexcept {
   // As with a compliant support of the part: the walls of the hole, not the hand's belief, say
   // where the axis is.
+  if (!options_.gives_way) {
+    return;
+  }
   const Vec3 held_back = X_WH_.p() - p_ref_;
   yield_offset_ += dt_ / kYieldTime * (held_back - held_back.dot(d) * d);
   Vec3 turned_back = spatial::RotationBetween(q_ref_, X_WH_.q());
@@ -365,8 +401,15 @@ void SimulatedPerson::StartSearch(const Vec3& d, double travel, bool is_by_eye) 
   if (is_by_eye) {
     back_off_to_ = std::max(back_off_to_, task_.engage_distance + kStandOff);
   }
+  // What a mate has on its axis only has to come in straighter, as far as the hand can tell.
+  const bool is_on_axis = is_guided_ && task_.has_play && options_.gives_way;
   for (int k = 0; k < 3; ++k) {
-    aim_turn_[k] = options_.aim_error_angle * random_.Normal();
+    aim_turn_[k] =
+        (is_on_axis ? options_.eye_error_angle : options_.aim_error_angle) * random_.Normal();
+  }
+  if (is_on_axis) {
+    search_offset_.setZero();
+    return;
   }
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   // Whoever looks tries where it saw the place, no further beside it than it may have seen wrong.

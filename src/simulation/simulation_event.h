@@ -16,19 +16,19 @@ namespace hvas::simulation {
 /** What one hold of a part amounted to. */
 struct HoldMetrics {
   std::int64_t t_taken_ns{0};
-  double path{0};           ///< Path of the displayed centre of mass [m].
-  double peak_true{0};      ///< Largest true force [N].
-  double peak_felt{0};      ///< Largest force given to the device [N].
-  double fit_true{0};       ///< Largest axial force of fits, true [N].
-  double fit_felt{0};       ///< Largest axial force of fits, as felt [N].
-  double preload{0};        ///< Largest force in it as a screw or nut, true [N].
-  double tightening{0};     ///< Largest torque of its thread and head, true [N m].
+  double path{0};                 ///< Path of the displayed centre of mass [m].
+  double peak_true{0};            ///< Largest true force [N].
+  double peak_felt{0};            ///< Largest force given to the device [N].
+  double fit_true{0};             ///< Largest axial force of fits, true [N].
+  double fit_felt{0};             ///< Largest axial force of fits, as felt [N].
+  double preload{0};              ///< Largest force in it as a screw or nut, true [N].
+  double tightening{0};           ///< Largest torque of its thread and head, true [N m].
   bool is_thread_crossed{false};  ///< It came into its thread tilted.
   double deepest{0};              ///< Deepest penetration, >= 0 [m].
-  double insertion{0};      ///< Longest engagement of a captured axis [m].
-  double arrival{0};        ///< Distance from its place when it was moved exactly there [m].
-  double arrival_angle{0};  ///< Angle from its place then [rad].
-  int collisions{0};        ///< Contacts that began before a mate guided the part.
+  double insertion{0};            ///< Longest engagement of a captured axis [m].
+  double arrival{0};              ///< Distance from its place when it was moved exactly there [m].
+  double arrival_angle{0};        ///< Angle from its place then [rad].
+  int collisions{0};              ///< Contacts that began before a mate guided the part.
   contact::BodyId hardest;  ///< Body pressed hardest while the hand was inserting; may be invalid.
   double hardest_force{0};  ///< [N]
 };

@@ -10,15 +10,15 @@
 namespace hvas::simulation {
 namespace {
 
-constexpr double kTurnStep = units::kTurn / 24;  // Between poses: the chord is good to 1 %. A choice.
+constexpr double kTurnStep =
+    units::kTurn / 24;  // Between poses: the chord is good to 1 %. A choice.
 
 /** The thread that is engaged deepest in the part's place; null where there is none. */
 const haptics::HeldMate* FindThread(const haptics::HeldPart& held) {
   const haptics::HeldMate* deepest = nullptr;
   double most = 0;
   for (const haptics::HeldMate& mate : held.mates) {
-    const double depth =
-        mate.thread ? haptics::CalcMateGeometry(mate, held.X_WB_goal).engaged : 0;
+    const double depth = mate.thread ? haptics::CalcMateGeometry(mate, held.X_WB_goal).engaged : 0;
     if (depth > most) {
       most = depth;
       deepest = &mate;
@@ -46,8 +46,7 @@ sweep::Path MakeThreadWay(const haptics::HeldPart& held, double engage_distance)
   const haptics::HeldThread& thread = *mate->thread;
   const double rise = std::abs(thread.lead) / units::kTurn;
   const double travel = CalcTravelOut(*mate, held);
-  const double head =
-      thread.stiffness > 0 ? thread.preload / (thread.stiffness * rise) : 0;
+  const double head = thread.stiffness > 0 ? thread.preload / (thread.stiffness * rise) : 0;
   const Vec3 out_W = -held.insertion_W;
   const Vec3& p_WQ = mate->X_WM.p();
   const double last = head + travel / rise;
@@ -55,10 +54,9 @@ sweep::Path MakeThreadWay(const haptics::HeldPart& held, double engage_distance)
   const int count = static_cast<int>(std::ceil(last / kTurnStep));
   for (int i = 0; i <= count; ++i) {
     const double angle = last * i / count;
-    const Quat turn =
-        spatial::RotationFromVector(std::copysign(angle, thread.lead) * out_W);
-    const Vec3 p = p_WQ + turn * (held.X_WB_goal.p() - p_WQ) +
-                   rise * std::max(0.0, angle - head) * out_W;
+    const Quat turn = spatial::RotationFromVector(std::copysign(angle, thread.lead) * out_W);
+    const Vec3 p =
+        p_WQ + turn * (held.X_WB_goal.p() - p_WQ) + rise * std::max(0.0, angle - head) * out_W;
     way.emplace_back(turn * held.X_WB_goal.q(), p);
   }
   const double straight = std::max(0.0, engage_distance - travel) + kLastPiece;

@@ -10,8 +10,8 @@
 
 namespace hvas::simulation {
 
-/** Length of the straight last piece of a way that turns [m]; as long as the hand needs to see where
- it leads. */
+/** Length of the straight last piece of a way that turns [m]; as long as the hand needs to see
+ where it leads. */
 inline constexpr double kLastPiece = 10e-3;
 
 /** The step of a part that comes out along a path; its way goes on straight after the last pose, in

@@ -57,9 +57,10 @@ inline void AddGuidanceOptions(CLI::App* command, haptics::PaperGuidance* guidan
   command->add_flag("--contact-in-holes", guidance->contact_in_holes,
                     "A shaft with play touches its hole where the two are: it tilts, jams and "
                     "wedges; without, its mate holds it on the axis, as in the papers");
-  command->add_flag("--threads-turn", guidance->threads_turn,
-                    "Screws and nuts go in by turning, and are tightened; without, they go straight "
-                    "in");
+  command->add_flag(
+      "--threads-turn", guidance->threads_turn,
+      "Screws and nuts go in by turning, and are tightened; without, they go straight "
+      "in");
 }
 
 /** Adds `--sizes one-pair|of-kind|any` to a command. */

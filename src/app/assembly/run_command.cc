@@ -226,6 +226,14 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
   AddConditionOption(command, &options->run.condition);
   AddForceMapOption(command, &options->run.force_map);
   AddGuidanceOptions(command, &options->run.guidance);
+  Choices<simulation::PersonKind> persons;
+  for (const auto kind : {simulation::PersonKind::kCareful, simulation::PersonKind::kHasty,
+                          simulation::PersonKind::kStiff}) {
+    persons.emplace_back(simulation::ToString(kind), kind);
+  }
+  AddChoice(command, "--person", &options->run.person, persons,
+            "How the simulated person works: careful; hasty, three times as fast and with all its "
+            "force at once; or stiff, a wrist that gives way to nothing");
   command->add_option(
       "--device", options->device,
       "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "

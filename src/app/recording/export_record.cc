@@ -44,9 +44,10 @@ void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
       ->add_option("--every", selection->every,
                    "For a record: keep one of so many ticks of each hand (not for .glb)")
       ->check(CLI::Range(1, 1'000'000));
-  command->add_flag("--demonstrations", selection->is_demonstrations,
-                    "Write demonstrations to learn from, as .h5 in the layout of robomimic or as .mcap: of "
-                    "a record each hold of a part, of a CAD file the planned way of each part");
+  command->add_flag(
+      "--demonstrations", selection->is_demonstrations,
+      "Write demonstrations to learn from, as .h5 in the layout of robomimic or as .mcap: of "
+      "a record each hold of a part, of a CAD file the planned way of each part");
 }
 
 bool IsRecord(const std::filesystem::path& file) {

@@ -65,8 +65,8 @@ TEST(AssembleTest, GearPumpGoesTogetherCompletely) {  // N10
   }
 }
 
-// L: a nut is turned onto its bolt and tightened to the torque of VDI 2230-1, whatever the seed; the
-// record replays with it.
+// L: a nut is turned onto its bolt and tightened to the torque of VDI 2230-1, whatever the seed;
+// the record replays with it.
 TEST(AssembleTest, NutIsTurnedOntoItsBoltAndTightened) {
   const TemporaryFolder folder;
   const std::string record = (folder.path() / "nut.hvasrec").string();

@@ -382,10 +382,10 @@ TEST(ExportDemonstrations, OfARecordAndOfAPlan) {
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ReadText(file).substr(1, 3), "HDF");
     const std::string mcap = (folder / "demonstrations.mcap").string();
-    ASSERT_EQ(RunHvas({"export", input, "-o", mcap, "--demonstrations", "--every", "20", "--force",
-                       "-q"})
-                  .status,
-              0);
+    ASSERT_EQ(
+        RunHvas({"export", input, "-o", mcap, "--demonstrations", "--every", "20", "--force", "-q"})
+            .status,
+        0);
     EXPECT_EQ(ReadText(mcap).substr(1, 4), "MCAP");
   }
   const Ran refused =

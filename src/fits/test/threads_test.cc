@@ -104,7 +104,8 @@ TEST(Threads, TighteningTorqueIsThatOfVdi2230) {
   EXPECT_NEAR(smooth.torque * 2 * 3.14159265 / (smooth.preload * m8.pitch), 1, 0.01);
 }
 
-// ISO 965-1's table for M8 6H/6g: es -28 um, T_d2 118 um, T_D2 160 um. Its formulas are rounded there.
+// ISO 965-1's table for M8 6H/6g: es -28 um, T_d2 118 um, T_D2 160 um. Its formulas are rounded
+// there.
 TEST(Threads, FlankPlayIsThatOfTheTolerances) {
   const double table = (28 + 0.5 * (118 + 160)) * std::tan(std::numbers::pi / 6);
   EXPECT_NEAR(1e6 * CalcMeanFlankPlay(*FindThread(8e-3, 0)), table, 0.02 * table);

@@ -110,8 +110,7 @@ TEST(InsertionForce, ChamferIsCrossedAsItsEquilibriumSays) {
        {{{mouth, kHoleDepth}, {kHoleRadius, kHoleDepth - kChamfer}}, slope},
        {{{kHoleRadius, kHoleDepth - kChamfer}, {kHoleRadius, 0}}, CylinderZ(kHoleRadius, -1)}},
       contact::testing::Segments(kHoleRadius, 1e-6)));
-  const auto peg =
-      contact::testing::Build(contact::testing::Shaft(kPegRadius, kPegLength, 1e-6));
+  const auto peg = contact::testing::Build(contact::testing::Shaft(kPegRadius, kPegLength, 1e-6));
   rig.scene.Add(hole, spatial::Pose());
   rig.Place(peg, spatial::Pose(Vec3(kBeside, 0, kHoleDepth + 1e-3)));
   testing::SetMass({{kPegRadius, 0, kPegLength}}, &rig.part);
@@ -131,8 +130,8 @@ TEST(InsertionForce, ChamferIsCrossedAsItsEquilibriumSays) {
     ++compared;
     const PlanarLoad expected = CalcOnChamfer(spring, depth);
     const spatial::Wrench& felt = rig.hand->last().F_felt_W;
-    worst = std::max({worst, std::abs(felt.f.x() / expected.f_x - 1),
-                      std::abs(felt.f.z() / expected.f_z - 1)});
+    worst = std::max(
+        {worst, std::abs(felt.f.x() / expected.f_x - 1), std::abs(felt.f.z() / expected.f_z - 1)});
     EXPECT_NEAR(felt.f.x(), expected.f_x, kAllowed * std::abs(expected.f_x)) << depth;
     EXPECT_NEAR(felt.f.z(), expected.f_z, kAllowed * std::abs(expected.f_z)) << depth;
     EXPECT_NEAR(felt.t.y(), expected.m, kAllowed * std::abs(expected.m)) << depth;

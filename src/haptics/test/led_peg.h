@@ -10,11 +10,12 @@
 namespace hvas::haptics::testing {
 
 inline constexpr double kMu = 0.2;
-inline constexpr double kCentre = 0.5 * kPegLength;  // Height of the centre of mass above the tip [m].
-inline constexpr double kOffset = 0.5e-3;            // How far the tip is led into the wall [m].
-inline constexpr double kTilt = 0.02;                // Of the hand [rad].
+inline constexpr double kCentre =
+    0.5 * kPegLength;                      // Height of the centre of mass above the tip [m].
+inline constexpr double kOffset = 0.5e-3;  // How far the tip is led into the wall [m].
+inline constexpr double kTilt = 0.02;      // Of the hand [rad].
 
-/** In the plane of the tilt: forces of the hole on the peg, and the moment about its centre. */
+/** Forces of the hole on the peg in the plane of its tilt, and the moment about its centre. */
 struct PlanarLoad {
   double f_x{0}, f_z{0}, m{0};
 };
@@ -31,7 +32,7 @@ struct PlanarPeg {
 
   [[nodiscard]] Vec3 centre() const { return tip() + kCentre * axis(); }
 
-  /** Of a normal force of 1 N on the side at the rim, with friction against the motion inwards. */
+  /** Force of the rim for a normal force of 1 N, with friction against the motion inwards. */
   [[nodiscard]] Vec3 ForceAtRim() const { return -across() + kMu * axis(); }
 
   [[nodiscard]] double MomentAtRim() const {
@@ -42,7 +43,7 @@ struct PlanarPeg {
 /** The hand's spring: where it leads the centre, and its tilt. */
 struct PlanarSpring {
   double k_x, k_t;
-  double x;  ///< Of the centre that is led [m].
+  double x;  ///< Where the centre is led to [m].
 
   [[nodiscard]] double ForceOn(const PlanarPeg& peg) const { return k_x * (x - peg.centre().x()); }
 
@@ -60,7 +61,7 @@ double FindRoot(double low, double high, const Function& function) {
   return 0.5 * (low + high);
 }
 
-/** With its side on the rim, at a tilt. */
+/** A peg with its side on the rim, at a tilt. */
 inline PlanarPeg MakeOnRim(double depth, double tilt) {
   return {kHoleRadius - (kPegRadius + depth * std::sin(tilt)) / std::cos(tilt), depth, tilt};
 }
@@ -105,7 +106,8 @@ inline PlanarLoad CalcTwoPoint(const PlanarSpring& spring, double depth) {
 inline constexpr double kChamfer = 1e-3;  // Width of a hole's chamfer of 45 degrees [m].
 
 /** The equilibrium of a peg whose tip slides down the chamfer of its hole, `depth` under the mouth:
- without a tilt of the hand, which is led beside the axis. The corner of the tip is the only point. */
+ without a tilt of the hand, which is led beside the axis. The corner of the tip is the only point.
+ */
 inline PlanarLoad CalcOnChamfer(const PlanarSpring& spring, double depth) {
   const Vec3 push(kMu - 1, 0, kMu + 1);  // Times a force: of the slope, and of friction up it.
   const auto make = [&](double tilt) {

@@ -171,8 +171,7 @@ TEST(ThreadRows, TightensAndBreaksLooseByThePublishedTorque) {
   const fits::Tightening tightening = fits::CalcTightening(m8, 640e6, 0.12, 0.12, 10.3e-3);
   const double stiffness = fits::CalcJointStiffness(m8, 20e-3);
   NutOnBolt nut(MakeM8(stiffness), 0);
-  const double turn_to_preload =
-      tightening.preload / (stiffness * m8.pitch / kTurn);
+  const double turn_to_preload = tightening.preload / (stiffness * m8.pitch / kTurn);
   nut.displayed.X_WD = Pose(spatial::RotationFromVector(Vec3(0, 0, turn_to_preload)), Vec3::Zero());
   // The hand turns it slowly; what resists is read where it is.
   ThreadForces forces;
@@ -239,8 +238,8 @@ TEST(ThreadRows, IsCrossedWhereItComesInTilted) {
   const double limit = std::atan(0.5 * thread.lead / thread.pitch_diameter);
   for (const double share : {0.9, 1.1}) {
     NutOnBolt nut(thread, kEngaged - 1e-6);
-    nut.displayed.X_WD = Pose(spatial::RotationFromVector(Vec3(share * limit, 0, 0)),
-                              nut.displayed.X_WD.p());
+    nut.displayed.X_WD =
+        Pose(spatial::RotationFromVector(Vec3(share * limit, 0, 0)), nut.displayed.X_WD.p());
     (void)nut.Step(2, 0);
     ASSERT_TRUE(nut.rows.is_in());
     EXPECT_EQ(nut.rows.is_crossed(), share > 1);
@@ -285,9 +284,8 @@ TEST(ThreadRows, NeverGiveMoreEnergyThanTheyTook) {
     const Vec3 v = 0.5 * (before.v + nut.displayed.V.v);
     const Vec3 w = 0.5 * (before.w + nut.displayed.V.w);
     given += kDt * (-push * v.z() - torque * w.z());
-    const double kinetic =
-        0.5 * nut.part.mass * nut.displayed.V.v.squaredNorm() +
-        0.5 * NutOnBolt::kInertia * nut.displayed.V.w.squaredNorm();
+    const double kinetic = 0.5 * nut.part.mass * nut.displayed.V.v.squaredNorm() +
+                           0.5 * NutOnBolt::kInertia * nut.displayed.V.w.squaredNorm();
     most = std::max(most, kinetic - given);
     inside += nut.rows.is_in() ? 1 : 0;
     tight += forces.preload > 0 ? 1 : 0;
