@@ -89,6 +89,7 @@ TEST(InsertionForce, OneAndTwoPointsAsTheirEquilibriumSays) {
 TEST(InsertionForce, ChamferIsCrossedAsItsEquilibriumSays) {
   constexpr double kSpeed = 0.2e-3;   // [m/s]
   constexpr double kAllowed = 1e-2;   // Of the force: dampers, and what a contact gives way.
+  constexpr double kMesh = 1e-6;      // [m]
   constexpr double kBeside = 0.9e-3;  // Of the hand's path [m].
   TickOptions options = testing::HardAndWeightless();
   options.condition = Condition::kCollision;
@@ -130,11 +131,14 @@ TEST(InsertionForce, ChamferIsCrossedAsItsEquilibriumSays) {
     ++compared;
     const PlanarLoad expected = CalcOnChamfer(spring, depth);
     const spatial::Wrench& felt = rig.hand->last().F_felt_W;
-    worst = std::max(
-        {worst, std::abs(felt.f.x() / expected.f_x - 1), std::abs(felt.f.z() / expected.f_z - 1)});
-    EXPECT_NEAR(felt.f.x(), expected.f_x, kAllowed * std::abs(expected.f_x)) << depth;
-    EXPECT_NEAR(felt.f.z(), expected.f_z, kAllowed * std::abs(expected.f_z)) << depth;
-    EXPECT_NEAR(felt.t.y(), expected.m, kAllowed * std::abs(expected.m)) << depth;
+    // The meshes deviate by 1 um, which bends the hand's spring.
+    const auto expect_near = [&](double found, double wanted, double lever) {
+      EXPECT_NEAR(found, wanted, kAllowed * std::abs(wanted) + lever * kMesh * spring.k_x) << depth;
+      worst = std::max(worst, std::abs(found / wanted - 1));
+    };
+    expect_near(felt.f.x(), expected.f_x, 1);
+    expect_near(felt.f.z(), expected.f_z, (1 + kMu) / (1 - kMu));
+    expect_near(felt.t.y(), expected.m, kCentre);
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_GT(compared, 8);
