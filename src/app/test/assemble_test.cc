@@ -80,7 +80,7 @@ TEST(AssembleTest, NutIsTurnedOntoItsBoltAndTightened) {
     EXPECT_LT(nut["arrival_urad"].get<double>(), 15e3) << seed;
     EXPECT_EQ(run["parts"][1]["preload_n"], 0);
     const json replay = RunHvasJson({"replay", record});
-    EXPECT_EQ(replay["digest"], run["digest"]) << replay.dump();
+    EXPECT_TRUE(replay["exact"].get<bool>()) << replay.dump();
   }
   const json straight = RunHvasJson({"assemble", ProductFile("nut_bolt")});
   ExpectAllSeated(straight, 3);
