@@ -39,7 +39,7 @@ async function recordStep(page, occurrence) {
   await page.evaluate(() => document.activeElement?.blur());
   await page.keyboard.press("n");
   await waitForPlacement(page, occurrence, "placed", 90_000);
-  const after = await waitForRest(page, occurrence);
+  const after = await waitForRest(page, occurrence, { most: 1e-7 }); // It is compared to 1e-6.
   await page.getByTestId("rec").click();
   await page.getByTestId("open-last").waitFor({ timeout: 30_000 });
   return { before, after };
