@@ -54,7 +54,9 @@ PlanarSpring LedBy(double k_x, double k_t) {
 
 /** The depth from which on two points touch. */
 double FindTwoPointDepth(const PlanarSpring& spring) {
-  for (double depth = kStart; depth < kLast; depth += 1e-5) {
+  constexpr double kStep = 10e-6;  // [m]
+  for (int i = 0; kStart + i * kStep < kLast; ++i) {
+    const double depth = kStart + i * kStep;
     // The tip has come to the other side of the hole.
     const double tilt = FindTiltOnRim(spring, depth);
     if (fits::CalcTipDepth(kPair, tilt) <= depth) {
