@@ -60,7 +60,7 @@ PersonOptions MakeHabits(PersonKind kind, PersonOptions careful) noexcept {
     careful.careful_push = careful.push_limit;
     careful.light_push = careful.push_limit;
   }
-  careful.gives_way = kind != PersonKind::kStiff;
+  careful.gives_way = kind == PersonKind::kCareful;
   return careful;
 }
 

@@ -233,7 +233,7 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
   }
   AddChoice(command, "--person", &options->run.person, persons,
             "How the simulated person works: careful; hasty, three times as fast and with all its "
-            "force at once; or stiff, a wrist that gives way to nothing");
+            "force at once; or stiff; both give way to nothing");
   command->add_option(
       "--device", options->device,
       "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "
