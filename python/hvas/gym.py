@@ -155,9 +155,9 @@ class Insertion(Base):
     """One part that has to go to its place, from a start a little before where it engages.
 
     An action moves what the hand is led to, by shares of `reach` and `turn`: six numbers of -1 to 1, in the frame of the
-    place. The arm is a spring of 400 N/m and 6 N m/rad to there, and it goes no further than `lead`
-    and `most_turn` ahead of the hand, which is how hard it presses on what does not give way. With mode="wrench" the first three numbers are shares of
-    `force`. Either comes on top of the force that holds the part up.
+    place. The arm is a spring of 400 N/m and 6 N m/rad to there, and it goes no further than `lead` [m] and `most_turn`
+    [rad] ahead of the hand, which is how hard it presses on what does not give way. With mode="wrench" the first three
+    numbers are shares of `force`. Either comes on top of the force that holds the part up.
 
     Threaded parts go in by turning where threads_turn says so, and are in their place once they are tight.
 
@@ -180,6 +180,7 @@ class Insertion(Base):
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 50}
+
     def __init__(self, model, step=1, *, mode="pose", condition="hybrid", contact_in_holes=True, seeds_fits=True, friction=None,
                  threads_turn=False, offset=1e-3, tilt=0.01, spin=0.0, clear=5e-3, reach=1e-3, turn=0.01, lead=15e-3, most_turn=0.1,
                  force=20.0, ticks=20, limit_s=20.0, picture=None, render_mode=None):

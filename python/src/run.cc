@@ -387,8 +387,7 @@ void DefineRun(py::module_* module) {
            py::arg("record") = "", py::arg("replace") = false, py::arg("on_part") = py::none(),
            "Has a simulated person, or the user of a device, put every part in; in virtual time "
            "unless realtime. threads_turn: screws and nuts go in by turning, and are tightened. "
-           "on_part "
-           "is called with each hvas.types.PartResult.")
+           "on_part is called with each hvas.types.PartResult.")
       .def("__repr__", [](const ModelHandle& handle) {
         return "<hvas.Model " + handle.model->product->source + ": " +
                std::to_string(handle.model->sequence.steps.size()) + " steps>";
@@ -443,8 +442,7 @@ void DefineRun(py::module_* module) {
       .def_property_readonly(
           "contacts", [](const py::object& self) { return PythonRun::ViewContacts(self); },
           "All contacts that pressed on the part in the last tick, a view as rows are. Fields: "
-          "p_WC, "
-          "f_C_W (force on the part), distance, other (occurrence; -1: none).")
+          "p_WC, f_C_W (force on the part), distance, other (occurrence; -1: none).")
       .def_property_readonly("seated", [](const PythonRun& run) { return run.run().is_seated(); })
       .def_property_readonly(
           "t", [](const PythonRun& run) { return run.run().last().t_s; },

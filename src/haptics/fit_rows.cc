@@ -51,8 +51,7 @@ FitForces FitRows::Finish(const ConstraintSolver& solver) noexcept {
   forces.torque_felt = solver.bounded_force(turning_row_);
   const bool is_in = forces.axial_felt >= 0;
   forces.axial_true = (is_in ? 1 : -1) * ToTrue(is_in ? in_ : out_, std::abs(forces.axial_felt));
-  forces.torque_true =
-      std::copysign(torque_map_.True(std::abs(forces.torque_felt)), forces.torque_felt);
+  forces.torque_true = torque_map_.TrueSigned(forces.torque_felt);
   stretch_ = -forces.axial_felt / kBristle;
   turned_stretch_ = radius_ > 0 ? -forces.torque_felt / (kBristle * radius_ * radius_) : 0.0;
   axial_row_ = turning_row_ = -1;

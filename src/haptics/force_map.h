@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "device/device.h"
 
 namespace hvas::haptics {
@@ -23,6 +25,15 @@ class ForceMap {
   [[nodiscard]] double Felt(double true_magnitude) const noexcept;
   /** Inverse of Felt. RT-safe. */
   [[nodiscard]] double True(double felt_magnitude) const noexcept;
+
+  /** Both of forces along a line, whose sign stays. RT-safe. */
+  [[nodiscard]] double FeltSigned(double truth) const noexcept {
+    return std::copysign(Felt(std::abs(truth)), truth);
+  }
+
+  [[nodiscard]] double TrueSigned(double felt) const noexcept {
+    return std::copysign(True(std::abs(felt)), felt);
+  }
 
   /** End of the linear part [N or N m]. */
   [[nodiscard]] double linear_limit() const noexcept { return linear_limit_; }

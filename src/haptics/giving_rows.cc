@@ -23,14 +23,6 @@ void GivingRows::Reset(bool starts_in_place) noexcept {
   stretch_ = 0;
 }
 
-double GivingRows::ToFelt(double truth) const noexcept {
-  return std::copysign(map_.Felt(std::abs(truth)), truth);
-}
-
-double GivingRows::ToTrue(double felt) const noexcept {
-  return std::copysign(map_.True(std::abs(felt)), felt);
-}
-
 void GivingRows::UpdateEngagement(const DisplayedPart& displayed, double travel) noexcept {
   const HeldPart& part = *displayed.part;
   const Vec3 off_W = displayed.X_WD.p() - part.X_WB_goal.p();
@@ -75,7 +67,7 @@ void GivingRows::Add(const DisplayedPart& displayed, double dt, ConstraintSolver
   }
   dt_ = dt;
   holding_ = std::max(0.0, std::min(load.in + load.spring, load.out - load.spring));
-  spring_ = ToFelt(load.spring);
+  spring_ = map_.FeltSigned(load.spring);
   // The map is concave: its slope at the spring's force makes the spring no stiffer than felt.
   constexpr double kDelta = 1e-3;  // [N]
   const double magnitude = std::abs(load.spring);
@@ -86,8 +78,8 @@ void GivingRows::Add(const DisplayedPart& displayed, double dt, ConstraintSolver
   Vec6 J;
   J << Vec3::Zero(), out_W_;
   row_ = solver->AddBoundedRow(
-      J, {ToFelt(load.spring - load.out) - spring_, ToFelt(load.spring + load.in) - spring_,
-          stretch_, FitRows::kBristle});
+      J, {map_.FeltSigned(load.spring - load.out) - spring_,
+          map_.FeltSigned(load.spring + load.in) - spring_, stretch_, FitRows::kBristle});
 }
 
 GivingRows::Forces GivingRows::Finish(const ConstraintSolver& solver) noexcept {
@@ -101,7 +93,7 @@ GivingRows::Forces GivingRows::Finish(const ConstraintSolver& solver) noexcept {
   // A stiff part that is met holds the hand like a wall for some ticks, until the step has followed
   // the map: what it truly holds is told by where it is.
   const GivingLoad load = CalcLoad(travel_ + moved);
-  return {std::clamp(ToTrue(felt), load.spring - load.out, load.spring + load.in), felt};
+  return {std::clamp(map_.TrueSigned(felt), load.spring - load.out, load.spring + load.in), felt};
 }
 
 }  // namespace hvas::haptics

@@ -43,8 +43,6 @@ class GivingRows {
  private:
   [[nodiscard]] GivingLoad CalcLoad(double travel) const noexcept;
   void UpdateEngagement(const DisplayedPart& displayed, double travel) noexcept;
-  [[nodiscard]] double ToFelt(double truth) const noexcept;
-  [[nodiscard]] double ToTrue(double felt) const noexcept;
 
   ForceMap map_;
   std::array<bool, kMaxCurves> is_engaged_{};

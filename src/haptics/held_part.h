@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "base/units.h"
 #include "contact/scene.h"
 #include "contact/shape.h"
 #include "fits/fit_force.h"
@@ -38,6 +40,14 @@ struct HeldThread {
    is nothing to clamp. */
   double stiffness{0};
   double preload{0};  ///< F_M, tightened in its place [N].
+
+  /** Advance of a radian, >= 0: |lead| / (2 pi) [m/rad]. */
+  [[nodiscard]] double rise() const noexcept { return std::abs(lead) / units::kTurn; }
+
+  /** Angle before its place at which its head comes to rest [rad]. */
+  [[nodiscard]] double head_angle() const noexcept {
+    return stiffness > 0 ? preload / (stiffness * rise()) : 0;
+  }
 };
 
 /** A mate of the held part with a part that is already in its place. */

@@ -30,23 +30,11 @@ void ThreadRows::Reset(bool starts_in_place) noexcept {
   inner_row_ = outer_row_ = torque_row_ = -1;
 }
 
-double ThreadRows::ToFelt(double truth) const noexcept {
-  return std::copysign(map_.Felt(std::abs(truth)), truth);
-}
-
-double ThreadRows::ToTrue(double felt) const noexcept {
-  return std::copysign(map_.True(std::abs(felt)), felt);
-}
-
-double ThreadRows::CalcHeadAngle() const noexcept {
-  return thread_.stiffness > 0 ? thread_.preload / (thread_.stiffness * rise_) : 0;
-}
-
 ThreadRows::Load ThreadRows::CalcLoad(double angle) const noexcept {
   Load load;
   const double flank = kFlankAngle * thread_.friction * 0.5 * thread_.pitch_diameter;
   load.friction = thread_.running_torque + flank * flank_force_;
-  const double turned = CalcHeadAngle() - angle;
+  const double turned = thread_.head_angle() - angle;
   if (thread_.stiffness > 0 && turned > 0) {
     load.preload = thread_.stiffness * rise_ * turned;
     load.spring = load.preload * rise_;
@@ -60,7 +48,7 @@ ThreadRows::Load ThreadRows::CalcLoad(double angle) const noexcept {
 // one that it has not passed.
 void ThreadRows::Enter(double z, double turn) noexcept {
   is_in_ = true;
-  const double most = (z + 0.5 * thread_.play) / rise_ + CalcHeadAngle();
+  const double most = (z + 0.5 * thread_.play) / rise_ + thread_.head_angle();
   angle_ = turn + units::kTurn * std::floor((most - turn) / units::kTurn);
   entry_angle_ = angle_;
   flank_force_ = stretch_ = 0;
@@ -73,7 +61,7 @@ void ThreadRows::Add(const DisplayedPart& displayed, const HeldMate& mate,
   const HeldPart& part = *displayed.part;
   thread_ = *mate.thread;
   dt_ = dt;
-  rise_ = std::abs(thread_.lead) / units::kTurn;
+  rise_ = thread_.rise();
   sense_ = thread_.lead < 0 ? -1 : 1;
   const bool is_out = geometry.way_W.dot(part.insertion_W) <= 0;
   out_W_ = is_out ? geometry.way_W : Vec3(-geometry.way_W);
@@ -98,7 +86,7 @@ void ThreadRows::Add(const DisplayedPart& displayed, const HeldMate& mate,
 void ThreadRows::AddFlanks(double z, double depth, const Vec3& p_CmQ_W,
                            const ContactOptions& contact, ConstraintSolver* solver) noexcept {
   const double lead = std::abs(thread_.lead);
-  const double past_head = angle_ - CalcHeadAngle();
+  const double past_head = angle_ - thread_.head_angle();
   const double helix = rise_ * std::max(past_head, 0.0);
   const double follows = past_head > 0 ? rise_ : 0;
   const double still_out = std::max(0.0, 1 - depth / (kLeadIn * lead));
@@ -119,7 +107,7 @@ void ThreadRows::AddFlanks(double z, double depth, const Vec3& p_CmQ_W,
 void ThreadRows::AddTorque(ConstraintSolver* solver) noexcept {
   const Load load = CalcLoad(angle_);
   const Vec3 axis_W = sense_ * out_W_;
-  spring_felt_ = ToFelt(load.spring);
+  spring_felt_ = map_.FeltSigned(load.spring);
   // The map is concave: its slope at the spring's torque makes the spring no stiffer than felt.
   constexpr double kDelta = 1e-5;  // [N m]
   const double slope = (map_.Felt(load.spring + kDelta) - map_.Felt(load.spring)) / kDelta;
@@ -128,14 +116,14 @@ void ThreadRows::AddTorque(ConstraintSolver* solver) noexcept {
     solver->AddAngularSpring(spring_felt_ * axis_W, slope_felt_ * axis_W * axis_W.transpose());
   }
   const bool is_stuck = is_crossed_ && entry_angle_ - angle_ > kCrossedTurn * units::kTurn;
-  const double most =
-      is_stuck ? std::numeric_limits<double>::infinity() : ToFelt(load.spring + load.friction);
+  const double most = is_stuck ? std::numeric_limits<double>::infinity()
+                               : map_.FeltSigned(load.spring + load.friction);
   const double radius = 0.5 * thread_.pitch_diameter;
   Vec6 J;
   J << axis_W, Vec3::Zero();
   torque_row_ = solver->AddBoundedRow(
-      J, {ToFelt(load.spring - load.friction) - spring_felt_, most - spring_felt_, stretch_,
-          FitRows::kBristle * radius * radius});
+      J, {map_.FeltSigned(load.spring - load.friction) - spring_felt_, most - spring_felt_,
+          stretch_, FitRows::kBristle * radius * radius});
 }
 
 ThreadForces ThreadRows::Finish(const ConstraintSolver& solver) noexcept {
@@ -150,8 +138,8 @@ ThreadForces ThreadRows::Finish(const ConstraintSolver& solver) noexcept {
   const double turned = dt_ * sense_ * out_W_.dot(solver.velocity(0).w);
   const double felt = spring_felt_ - slope_felt_ * turned + friction;
   const Load load = CalcLoad(angle_ + turned);
-  const double truth = is_crossed_ ? ToTrue(felt)
-                                   : std::clamp(ToTrue(felt), load.spring - load.friction,
+  const double truth = is_crossed_ ? map_.TrueSigned(felt)
+                                   : std::clamp(map_.TrueSigned(felt), load.spring - load.friction,
                                                 load.spring + load.friction);
   forces.torque_felt = sense_ * felt;
   forces.torque_true = sense_ * truth;

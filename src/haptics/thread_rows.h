@@ -75,10 +75,6 @@ class ThreadRows {
   void AddFlanks(double z, double depth, const Vec3& p_CmQ_W, const ContactOptions& contact,
                  ConstraintSolver* solver) noexcept;
   void AddTorque(ConstraintSolver* solver) noexcept;
-  [[nodiscard]] double ToFelt(double truth) const noexcept;
-  [[nodiscard]] double ToTrue(double felt) const noexcept;
-  /** Angle at which the head comes to rest [rad]. */
-  [[nodiscard]] double CalcHeadAngle() const noexcept;
 
   ForceMap map_;
   bool is_in_{false};

@@ -44,9 +44,9 @@ sweep::Path MakeThreadWay(const haptics::HeldPart& held, double engage_distance)
     return {};
   }
   const haptics::HeldThread& thread = *mate->thread;
-  const double rise = std::abs(thread.lead) / units::kTurn;
+  const double rise = thread.rise();
   const double travel = CalcTravelOut(*mate, held);
-  const double head = thread.stiffness > 0 ? thread.preload / (thread.stiffness * rise) : 0;
+  const double head = thread.head_angle();
   const Vec3 out_W = -held.insertion_W;
   const Vec3& p_WQ = mate->X_WM.p();
   const double last = head + travel / rise;

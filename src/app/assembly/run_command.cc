@@ -232,7 +232,8 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
     persons.emplace_back(simulation::ToString(kind), kind);
   }
   AddChoice(command, "--person", &options->run.person, persons,
-            "How the simulated person works: careful; hasty, three times as fast and with all its "
+            "How a simulated person without a device works: careful; hasty, three times as fast "
+            "and with all its "
             "force at once; or stiff; both give way to nothing");
   command->add_option(
       "--device", options->device,
