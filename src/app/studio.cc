@@ -19,6 +19,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/assembly/rendering_options.h"
 #include "app/end_watch.h"
 #include "app/output/report_failure.h"
 #include "app/product/load_product.h"
@@ -47,6 +48,7 @@ struct StudioOptions {
   std::filesystem::path recordings;  ///< Empty: the user's own.
   std::uint64_t seed{1};             ///< Any number: the actual sizes of the fits follow from it.
   double rate_hz{1000};              ///< X4 asks for 1 kHz.
+  haptics::PaperGuidance guidance;
   bool opens_browser{true};
   bool has_workshop{false};      ///< The shipped tools and fixtures are on the table.
   bool is_fresh{false};          ///< Nothing of the work before is gone on with.
@@ -93,6 +95,7 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   constexpr std::uint32_t kBelowRecordings = 0x3FFFFFFF;  // which begin above it, in the page
   bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
+  bench.guidance = options.guidance;
   bench.scenes.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   LoadOptions load = options.load;
   if (options.has_workshop) {
@@ -377,6 +380,7 @@ void AddStudio(CLI::App* app, int* status) {
   command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
+  AddGuidanceOptions(command, &options->guidance);
   command->add_flag("--workshop", options->has_workshop,
                     "Put the shipped tools and fixtures on the table: hexagon keys, hammer, "
                     "screwdriver, spanner, caliper, vise, chuck, tray and V-block");
@@ -395,6 +399,7 @@ void AddStudio(CLI::App* app, int* status) {
       "Examples:\n"
       "  hvas studio\n"
       "  hvas studio products/gear_pump.step\n"
+      "  hvas studio products/nut_bolt.step --threads-turn\n"
       "  hvas studio --study fit-2016 --participant P01 -o fits\n"
       "  hvas studio pump.step --port 8080 --no-open\n"
       "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"

@@ -56,6 +56,7 @@ LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
     purpose.trial->Adjust(goes_through_device, &tick_options_);
   } else {
     tick_options_.guidance.finish_distance = kFinishDistance;
+    haptics::Apply(purpose.guidance, &tick_options_);
   }
   if (purpose.has_person) {
     person_ = std::make_unique<simulation::SimulatedPerson>(

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "device/opened_device.h"
+#include "haptics/paper_guidance.h"
 #include "simulation/device_session.h"
 #include "simulation/simulated_person.h"
 #include "studio/live_trial.h"
@@ -24,6 +25,7 @@ struct HandPurpose {
   spatial::Pose X_WH;  ///< Initial pose of the hand.
   double rate_hz{1000};
   const LiveTrial* trial{nullptr};  ///< Trial of a study; may be null.
+  haptics::PaperGuidance guidance;  ///< Of hands that are not in a trial, which has its own.
 };
 
 /** Makes the tick options of a hand that a remote client moves: those of the simulated device, with

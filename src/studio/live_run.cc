@@ -21,7 +21,10 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
   for (const HandSetup& setup : options.hands) {
     const HandPurpose purpose{options.has_person,
                               simulation::SeedOfHand(options.seed, hands.size()),
-                              simulation::StartOfHand(model), options.rate_hz, options.trial.get()};
+                              simulation::StartOfHand(model),
+                              options.rate_hz,
+                              options.trial.get(),
+                              options.guidance};
     hands.push_back(std::make_unique<LiveHand>(setup, purpose, model));
   }
   return hands;

@@ -46,6 +46,7 @@ struct LiveOptions {
   std::vector<HandSetup> hands{1};  ///< One or two.
   std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
+  haptics::PaperGuidance guidance;  ///< See HandPurpose.
   bool forces_off{false};           ///< No force from the first tick on.
   std::shared_ptr<Recording> recording;  ///< Receives all events; may be null.
   std::shared_ptr<LiveTrial> trial;      ///< Trial of a study; may be null.

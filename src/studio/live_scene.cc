@@ -79,6 +79,7 @@ void LiveScene::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   live.has_person = has_person;
   live.seed = options_.seed;
   live.rate_hz = options_.rate_hz;
+  live.guidance = options_.guidance;
   live.forces_off = forces_off_;
   for (SceneObserver* observer : observers_) {
     observer->ConfigureRun(*scene, &live);

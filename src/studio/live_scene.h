@@ -28,8 +28,9 @@ namespace hvas::studio {
 class LiveScene {
  public:
   struct Options {
-    std::uint64_t seed{1};  ///< Any number: the simulated person's hand follows from it.
-    double rate_hz{1000};   ///< X4 asks for 1 kHz.
+    std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
+    double rate_hz{1000};             ///< X4 asks for 1 kHz.
+    haptics::PaperGuidance guidance;  ///< See HandPurpose.
   };
 
   LiveScene(const Options& options, EventBus* events) : options_(options), events_(events) {}

@@ -6,7 +6,7 @@ namespace hvas::studio {
 
 Workbench::Workbench(const WorkbenchOptions& options)
     : builder_(options.scenes),
-      live_({options.scenes.seed, options.rate_hz}, &events_),
+      live_({options.scenes.seed, options.rate_hz, options.guidance}, &events_),
       hands_(&live_, &events_, &worker_),
       edits_(&builder_, &live_, &events_, &worker_),
       demo_(&live_, &edits_, &worker_),

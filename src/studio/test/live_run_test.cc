@@ -124,5 +124,17 @@ TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
   EXPECT_TRUE(listener_.has_true_clock());
 }
 
+TEST(LiveHandTest, RendersWithTheGuidanceAskedForOutsideTrials) {
+  const auto model = simulation::testing::PegInBlockModel();
+  HandPurpose purpose;
+  purpose.guidance.threads_turn = true;
+  purpose.guidance.contact_in_holes = true;
+  const haptics::TickOptions tick = LiveHand({}, purpose, *model).tick_options();
+  EXPECT_TRUE(tick.guidance.threads_turn);
+  EXPECT_TRUE(tick.guidance.contact_in_holes);
+  EXPECT_GT(tick.guidance.finish_distance, 0);
+  EXPECT_FALSE(LiveHand({}, {}, *model).tick_options().guidance.threads_turn);
+}
+
 }  // namespace
 }  // namespace hvas::studio
