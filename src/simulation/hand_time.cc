@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace hvas::simulation {
 namespace {
@@ -24,6 +25,11 @@ constexpr double kThin = 2e-3;
 constexpr int kLook = 2;  // E2, before a get or a put that needs care [MOD].
 
 }  // namespace
+
+int SumMods(const std::vector<HandMotion>& motions) {
+  return std::accumulate(motions.begin(), motions.end(), 0,
+                         [](int sum, const HandMotion& motion) { return sum + motion.mods; });
+}
 
 int CalcMoveMods(double distance) {
   const auto nearest = std::min_element(

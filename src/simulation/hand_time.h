@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "spatial/pose.h"
 
 /** Times of a hand at work by MODAPTS (Heyde, 1966): an estimate to compare orders by, in whole
@@ -18,6 +22,35 @@ inline constexpr int kToolOnMods = 7;      ///< Puts the tool onto a fastener: M
 inline constexpr int kHoldMods = 4;        ///< The other hand takes hold of a part: M3 G1.
 inline constexpr int kPressMods = 4;       ///< Presses a fit together: A4.
 inline constexpr int kCrankMods = 3;       ///< One turn of a thread: C3.
+
+/** What a motion of the hand is for. */
+enum class MotionPurpose : std::uint8_t {
+  kTurnProduct,  ///< The product is turned over, because a part would come in from below.
+  kOtherWay,     ///< The hand goes to another side.
+  kGetTool,      ///< A tool is fetched.
+  kChangeTool,   ///< One is laid aside, and another one fetched.
+  kGoTo,         ///< The hand goes to the part; amount: distance [m].
+  kGet,          ///< It gets the part; amount: largest extent [m].
+  kBring,        ///< It brings the part to its place; amount: distance [m].
+  kPut,          ///< It puts the part there.
+  kLoad,         ///< The part is heavy; amount: mass [kg].
+  kReachIn,      ///< The hand reaches in among parts, and out again; amount: reach [m].
+  kToolOn,       ///< A tool is put onto a fastener.
+  kCrank,        ///< A thread is turned in; amount: turns.
+  kPress,        ///< A fit is pressed together; amount: force [N].
+  kHold,         ///< The other hand takes hold of a part.
+};
+
+/** A motion of the hand, with its elements of MODAPTS: "E2 G3". */
+struct HandMotion {
+  MotionPurpose purpose{MotionPurpose::kGoTo};
+  std::string code;
+  int mods{0};
+  double amount{0};  ///< In the unit that stands at the purpose; else 0.
+};
+
+/** The sum of their MOD. */
+[[nodiscard]] int SumMods(const std::vector<HandMotion>& motions);
 
 /** How a part is put into its place. */
 enum class PutCare {

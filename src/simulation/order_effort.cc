@@ -4,9 +4,10 @@
 #include <numeric>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "dynamics/world.h"
 #include "mates/thread_joints.h"
-#include "simulation/hand_time.h"
 
 namespace hvas::simulation {
 namespace {
@@ -175,7 +176,7 @@ double EffortFinder::CalcWeight(const Unit& parts) const {
   });
 }
 
-int EffortFinder::CalcMods(const Unit& parts, bool has_tool) const {
+std::vector<HandMotion> EffortFinder::ListMotions(const Unit& parts, bool has_tool) const {
   const Body& lead = model_.bodies[parts.front().index()];
   const Vec3& p_BoBcm_B = lead.mass.p_BoBcm_B;
   const double distance = (lead.X_WB_goal * p_BoBcm_B - lead.X_WB_start * p_BoBcm_B).norm();
@@ -196,9 +197,26 @@ int EffortFinder::CalcMods(const Unit& parts, bool has_tool) const {
     }
   }
   // The hand goes to the part as far as it then goes with it.
-  return 2 * CalcMoveMods(distance) + CalcGetMods(box.size()) + CalcPutMods(care) +
-         CalcLoadMods(CalcWeight(parts) / Gravity()) + (has_tool ? kToolOnMods : 0) +
-         kCrankMods * static_cast<int>(std::ceil(turns));
+  const int move = CalcMoveMods(distance);
+  const int get = CalcGetMods(box.size());
+  const int put = CalcPutMods(care);
+  const double mass = CalcWeight(parts) / Gravity();
+  std::vector<HandMotion> motions{
+      {MotionPurpose::kGoTo, fmt::format("M{}", move), move, distance},
+      {MotionPurpose::kGet, get > 1 ? "E2 G3" : "G1", get, box.size().maxCoeff()},
+      {MotionPurpose::kBring, fmt::format("M{}", move), move, distance},
+      {MotionPurpose::kPut, put > 0 ? fmt::format("E2 P{}", put - 2) : "P0", put, 0}};
+  if (const int load = CalcLoadMods(mass); load > 0) {
+    motions.push_back({MotionPurpose::kLoad, fmt::format("L{}", load), load, mass});
+  }
+  if (has_tool) {
+    motions.push_back({MotionPurpose::kToolOn, "M3 E2 P2", kToolOnMods, 0});
+  }
+  if (const int whole_turns = static_cast<int>(std::ceil(turns)); whole_turns > 0) {
+    motions.push_back({MotionPurpose::kCrank, fmt::format("{} C{}", whole_turns, kCrankMods),
+                       kCrankMods * whole_turns, turns});
+  }
+  return motions;
 }
 
 }  // namespace hvas::simulation

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulation/extraction.h"
+#include "simulation/hand_time.h"
 #include "simulation/model.h"
 
 namespace hvas::simulation {
@@ -86,10 +87,10 @@ class EffortFinder {
   /** m |g| of the parts of a move [N]. */
   [[nodiscard]] double CalcWeight(const Unit& parts) const;
 
-  /** MOD of the hand (hand_time.h) that a move takes in every order: to get the parts, to take them
-   to their place and put them there, and to turn in what has a thread.
+  /** Motions of the hand (hand_time.h) that a move takes in every order: to get the parts, to take
+   them to their place and put them there, and to turn in what has a thread.
    @param has_tool  A tool turns it. */
-  [[nodiscard]] int CalcMods(const Unit& parts, bool has_tool) const;
+  [[nodiscard]] std::vector<HandMotion> ListMotions(const Unit& parts, bool has_tool) const;
 
  private:
   void FindReach(std::size_t move, const Unit& parts, const Vec3& extraction_W,

@@ -205,7 +205,8 @@ class RuleFinder {
   void FindEffort(std::size_t m, EffortFinder* efforts) {
     FreeMove& move = rules_.moves[m];
     move.weight = efforts->CalcWeight(move.parts);
-    move.mods = efforts->CalcMods(move.parts, !move.tool.empty());
+    move.motions = efforts->ListMotions(move.parts, !move.tool.empty());
+    move.mods = SumMods(move.motions);
     for (OrderedWay& way : move.ways) {
       way.effort = efforts->Find(units_, m, way.step.extraction_W);
     }

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "simulation/neighbours.h"
 
 namespace hvas::simulation {
@@ -156,6 +158,43 @@ class OrderCounter {
   double force_before_{0};                 // Until the product was last turned [N].
   std::array<double, kUpSides> forces_{};  // Since then, for each side upwards [N].
 };
+
+/** All motions of the hand at a move.
+ @param before,after  What was counted before it, and with it. @param tool  The last one needed. */
+std::vector<HandMotion> ListMotions(const MoveInOrder& added, const OrderCounts& before,
+                                    const OrderCounts& after, std::string_view tool) {
+  std::vector<HandMotion> motions;
+  const auto add = [&motions](bool is_there, MotionPurpose purpose, const char* code, int mods,
+                              double amount) {
+    if (is_there) {
+      motions.push_back({purpose, code, mods, amount});
+    }
+  };
+  add(after.turns > before.turns, MotionPurpose::kTurnProduct, "M4 E2 G3 M4 E2 P2", kTurnMods, 0);
+  add(after.direction_changes > before.direction_changes, MotionPurpose::kOtherWay, "M3 J2",
+      kOtherWayMods, 0);
+  motions.insert(motions.end(), added.move.motions.begin(), added.move.motions.end());
+  const bool is_other_tool = !added.move.tool.empty() && added.move.tool != tool;
+  // A part is put to its place before the tool for it is fetched.
+  const auto tool_on = std::find_if(motions.begin(), motions.end(), [](const HandMotion& motion) {
+    return motion.purpose == MotionPurpose::kToolOn;
+  });
+  if (is_other_tool) {
+    motions.insert(tool_on,
+                   tool.empty()
+                       ? HandMotion{MotionPurpose::kGetTool, "M4 G1", kToolGetMods, 0}
+                       : HandMotion{MotionPurpose::kChangeTool, "M4 P0 M4 G1", kToolChangeMods, 0});
+  }
+  const Effort& effort = added.effort;
+  const int reach_mods = CalcReachMods(effort.reach);
+  if (reach_mods > 0) {
+    motions.push_back(
+        {MotionPurpose::kReachIn, fmt::format("2 M{}", reach_mods / 2), reach_mods, effort.reach});
+  }
+  add(added.is_loose || effort.against > 0, MotionPurpose::kHold, "M3 G1", kHoldMods, 0);
+  add(effort.press > 0, MotionPurpose::kPress, "A4", kPressMods, effort.press);
+  return motions;
+}
 
 /** Counts an order from its beginning.
  @param visit  Called with the counts after each move. */
@@ -480,11 +519,13 @@ std::vector<Vec3> ListUpSides(const OrderRules& rules, const FoundOrder& order) 
 std::vector<HandWork> ListHandWork(const OrderRules& rules, const FoundOrder& order) {
   const std::vector<Vec3> ups = ListUpSides(rules, order);
   std::vector<HandWork> work;
-  int mods = 0;
+  OrderCounts before;
+  std::string_view tool;
   Walk(rules, order, [&](const MoveInOrder& added, const OrderCounts& counts) {
     work.push_back({added.effort.reach, added.CalcForce(ups[work.size()]), added.effort.press,
-                    counts.mods - mods});
-    mods = counts.mods;
+                    counts.mods - before.mods, ListMotions(added, before, counts, tool)});
+    tool = added.move.tool.empty() ? tool : added.move.tool;
+    before = counts;
   });
   return work;
 }

@@ -107,9 +107,11 @@ struct HandWork {
   double force{0};  ///< Force of both hands, each 100 N at most: more is for a press [N].
   double press{0};  ///< What the fits need [N].
   int mods{0};      ///< Its time, with a turn of the product or another tool before it [MOD].
+  std::vector<HandMotion> motions;  ///< What this time is made of, in the order of the work.
 };
 
-/** What each move of an order asks of the hand; their sums are those of OrderCounts. */
+/** What each move of an order asks of the hand; their sums are those of OrderCounts. A move whose
+ FreeMove::motions are not known has only those that the order adds. */
 [[nodiscard]] std::vector<HandWork> ListHandWork(const OrderRules& rules, const FoundOrder& order);
 
 /** What stands in the space of a fastener's tool when it comes at a place in an order: parts of

@@ -187,6 +187,7 @@ TEST(OrderSearchTest, WhatTheMovesAskOfTheHandAddsUpToTheCounts) {
       sum.reach += work.reach;
       sum.force += work.force;
       sum.mods += work.mods;
+      EXPECT_EQ(10 + SumMods(work.motions), work.mods) << "a move has 10 of its own";
     }
     EXPECT_NEAR(sum.reach, best.counts.reach, 1e-12) << seed;
     EXPECT_NEAR(sum.force, best.counts.force, 1e-9) << seed;
@@ -363,6 +364,7 @@ TEST(OrderRulesTest, AHandGoesIntoTheCupToItsCoin) {
   EXPECT_EQ(lid.ways[0].effort.least_reach, 0);
   EXPECT_NEAR(coin.weight, 9.81 * (*model)->bodies[1].mass.mass, 1e-12);
   EXPECT_GT(lid.mods, 0);
+  EXPECT_EQ(SumMods(lid.motions), lid.mods);
 }
 
 TEST(OrderRulesTest, AFitIsPressedWithItsForce) {
