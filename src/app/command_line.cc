@@ -31,6 +31,9 @@
 #include "app/recording/export.h"
 #include "app/recording/replay.h"
 #include "app/recording/report.h"
+#include "app/shopfloor/dfa.h"
+#include "app/shopfloor/instructions.h"
+#include "app/shopfloor/motions.h"
 #include "app/studio.h"
 #include "app/study/study.h"
 #include "mates/side_file.h"
@@ -180,6 +183,9 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddDisassemble(app.get(), status);
   AddReplay(app.get(), status);
   AddReport(app.get(), status);
+  AddInstructions(app.get(), status);
+  AddDfa(app.get(), status);
+  AddMotions(app.get(), status);
   AddFit(app.get(), status);
   AddStudy(app.get(), status);
   AddDevices(app.get(), status);

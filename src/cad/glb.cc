@@ -29,8 +29,8 @@ constexpr int kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962;
 constexpr int kElementArrayBuffer = 34963;
 
-/** The four kinds of numbers, each in a buffer view of its own; sizes are multiples of 4 bytes. */
-enum View { kPositions, kNormals, kFaceIds, kIndices, kViewCount };
+/** The kinds of numbers, each in a buffer view of its own; sizes are multiples of 4 bytes. */
+enum View { kPositions, kNormals, kFaceIds, kIndices, kMotions, kViewCount };
 
 template <typename T>
 void Append(const T& value, std::string* bytes) {
@@ -57,9 +57,10 @@ double ToLinear(float channel) {
 
 class GlbBuilder {
  public:
-  GlbBuilder(const Product& product, bool is_fine) : product_(product), is_fine_(is_fine) {}
+  GlbBuilder(const Product& product, bool is_fine)
+      : product_(product), is_fine_(is_fine), node_of_(product.occurrences.size(), -1) {}
 
-  Result<std::string> Build() {
+  Result<std::string> Build(const std::vector<GlbMotion>& motions) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "HVAS"}};
     json_["scene"] = 0;
     json_["scenes"] = {{{"name", product_.name}, {"nodes", {0}}}};
@@ -68,6 +69,9 @@ class GlbBuilder {
       AddMesh(part);
     }
     AddNode(product::SubassemblyId(0), /*is_root=*/true);
+    for (const GlbMotion& motion : motions) {
+      AddMotion(motion);
+    }
     return Assemble();
   }
 
@@ -234,21 +238,83 @@ class GlbBuilder {
     if (mesh_of_part_[occurrence.part.index()] >= 0) {
       node["mesh"] = mesh_of_part_[occurrence.part.index()];
     }
+    node_of_[id.index()] = static_cast<int>(json_["nodes"].size());
     json_["nodes"].push_back(std::move(node));
     return json_["nodes"].size() - 1;
   }
 
+  std::size_t AddMotionNumbers(const std::vector<float>& numbers, const char* type,
+                               std::size_t count) {
+    std::string& bytes = views_[kMotions];
+    const std::size_t accessor = AddAccessor(kMotions, kFloat, type, count, bytes.size());
+    for (const float number : numbers) {
+      Append(number, &bytes);
+    }
+    return accessor;
+  }
+
+  std::size_t AddTimes(const std::vector<float>& times) {
+    const std::size_t accessor = AddMotionNumbers(times, "SCALAR", times.size());
+    json_["accessors"][accessor]["min"] = {static_cast<double>(times.front())};
+    json_["accessors"][accessor]["max"] = {static_cast<double>(times.back())};
+    return accessor;
+  }
+
+  void AddChannel(int node, const char* path, std::size_t times, std::size_t values,
+                  const char* interpolation) {
+    Json& animation = json_["animations"][0];
+    animation["samplers"].push_back(
+        {{"input", times}, {"output", values}, {"interpolation", interpolation}});
+    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
+                                     {"target", {{"node", node}, {"path", path}}}});
+  }
+
+  void AddMotion(const GlbMotion& motion) {
+    const int node = node_of_[motion.occurrence.index()];
+    if (node < 0 || motion.times_s.empty()) {
+      return;
+    }
+    json_["animations"][0]["name"] = "assembly";
+    std::vector<float> times;
+    std::vector<float> places;
+    std::vector<float> turns;
+    for (std::size_t i = 0; i < motion.times_s.size(); ++i) {
+      times.push_back(static_cast<float>(motion.times_s[i]));
+      const Vec3& p = motion.X_WB[i].p();
+      const Quat q = motion.X_WB[i].q().normalized();
+      for (const double value : {p.x(), p.y(), p.z()}) {
+        places.push_back(static_cast<float>(value));
+      }
+      for (const double value : {q.x(), q.y(), q.z(), q.w()}) {
+        turns.push_back(static_cast<float>(value));
+      }
+    }
+    const std::size_t at = AddTimes(times);
+    AddChannel(node, "translation", at, AddMotionNumbers(places, "VEC3", times.size()), "LINEAR");
+    AddChannel(node, "rotation", at, AddMotionNumbers(turns, "VEC4", times.size()), "LINEAR");
+    if (motion.appears_s > 0) {
+      // What is not there yet has no size: glTF 2.0 itself animates no visibility.
+      const std::size_t seen = AddTimes({0.0F, static_cast<float>(motion.appears_s)});
+      AddChannel(node, "scale", seen, AddMotionNumbers({0, 0, 0, 1, 1, 1}, "VEC3", 2), "STEP");
+    }
+  }
+
   Result<std::string> Assemble() {
     std::string binary;
-    // [bytes] of a position, a normal; indices are packed.
-    constexpr std::array<int, kViewCount> kStrides{12, 12, 4, 0};
+    // [bytes] of a position, a normal; indices and what moves are packed.
+    constexpr std::array<int, kViewCount> kStrides{12, 12, 4, 0, 0};
     for (int view = 0; view < kViewCount && json_.contains("meshes"); ++view) {
       const auto at = static_cast<std::size_t>(view);
+      if (view == kMotions && views_[at].empty()) {
+        continue;
+      }
       Json json{{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", views_[at].size()}};
       if (kStrides[at] > 0) {
         json["byteStride"] = kStrides[at];
       }
-      json["target"] = view == kIndices ? kElementArrayBuffer : kArrayBuffer;
+      if (view != kMotions) {
+        json["target"] = view == kIndices ? kElementArrayBuffer : kArrayBuffer;
+      }
       json_["bufferViews"].push_back(std::move(json));
       binary += views_[at];
       views_[at].clear();
@@ -270,12 +336,14 @@ class GlbBuilder {
   std::array<std::string, kViewCount> views_;
   std::map<ColorKey, std::size_t> materials_;
   std::vector<int> mesh_of_part_;
+  std::vector<int> node_of_;  // Each occurrence's node; below zero: none.
 };
 
 }  // namespace
 
-Result<std::string> MakeGlb(const Product& product, bool is_fine) {
-  return GlbBuilder(product, is_fine).Build();
+Result<std::string> MakeGlb(const Product& product, bool is_fine,
+                            const std::vector<GlbMotion>& motions) {
+  return GlbBuilder(product, is_fine).Build(motions);
 }
 
 }  // namespace hvas::cad

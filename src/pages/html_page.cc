@@ -59,12 +59,12 @@ std::string MakeTile(std::string_view name, std::string_view value) {
 }
 
 std::string MakeHtmlPage(std::string_view title, std::string_view body,
-                         std::string_view extra_style) {
+                         std::string_view extra_style, std::string_view language) {
   return fmt::format(
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
+      "<!doctype html><html lang=\"{}\"><head><meta charset=\"utf-8\"><meta "
       "name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>{}</title>"
       "<style>{}{}</style></head><body><main>{}</main></body></html>\n",
-      Escape(title), kPageStyle, extra_style, body);
+      language, Escape(title), kPageStyle, extra_style, body);
 }
 
 }  // namespace hvas::pages

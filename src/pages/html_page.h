@@ -15,8 +15,10 @@ namespace hvas::pages {
 
 /** The whole page around `body`, which is HTML; `title` is plain text. What the styles are for:
  "soft", "good", "bad", "verdict", "l" (cells to the left), "scroll" around wide tables, "tiles" for
- a list of MakeTile; `extra_style` is CSS of this page alone. */
+ a list of MakeTile; `extra_style` is CSS of this page alone, `language` that of its words
+ ("en", "de"). */
 [[nodiscard]] std::string MakeHtmlPage(std::string_view title, std::string_view body,
-                                       std::string_view extra_style = {});
+                                       std::string_view extra_style = {},
+                                       std::string_view language = "en");
 
 }  // namespace hvas::pages

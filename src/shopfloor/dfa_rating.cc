@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "product/fastener_name.h"
+#include "shopfloor/order_arrow.h"
 #include "simulation/hand_time.h"
 
 namespace hvas::shopfloor {
@@ -264,43 +265,75 @@ std::optional<std::string> FindOtherMaterial(const Model& model, OccurrenceId pa
                   : std::nullopt;
 }
 
-/** Parts that each part would lock in, were it there before: it stands in all of their ways. */
-std::map<OccurrenceId, OccurrenceId> FindLockedIn(const OrderPlan& plan) {
-  std::map<OccurrenceId, OccurrenceId> locked;
-  for (const FreeMove& move : plan.rules.moves) {
-    for (const std::size_t other : move.ways.front().moves) {
-      const bool is_in_all = std::all_of(
-          move.ways.begin(), move.ways.end(), [other](const simulation::OrderedWay& way) {
-            return std::binary_search(way.moves.begin(), way.moves.end(), other);
-          });
-      if (is_in_all) {
-        locked.emplace(plan.rules.moves[other].parts.front(), move.parts.front());
+/** Symmetries of parts, each looked for once: equal parts come the same way most often. */
+class SymmetryFinder {
+ public:
+  explicit SymmetryFinder(const product::Product& product) : product_(product) {}
+
+  [[nodiscard]] PartSymmetry Find(OccurrenceId id, const Vec3& way_B) {
+    const product::PartId part = product_.occurrences[id.index()].part;
+    for (const Found& found : found_) {
+      if (found.part == part && std::abs(found.way_B.dot(way_B)) > kParallel) {
+        return found.symmetry;
       }
+    }
+    found_.push_back({part, way_B, FindSymmetry(product_.part_of(id), way_B)});
+    return found_.back().symmetry;
+  }
+
+ private:
+  struct Found {
+    product::PartId part;
+    Vec3 way_B;
+    PartSymmetry symmetry;
+  };
+
+  const product::Product& product_;
+  std::vector<Found> found_;
+};
+
+/** "Lock washer", "Scheibe 8,4". */
+bool IsWasherName(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return name.find("washer") != std::string::npos || name.starts_with("scheibe") ||
+         name.find("federring") != std::string::npos;
+}
+
+bool IsFastener(const Model& model, OccurrenceId id) {
+  const auto is_named = [](const std::string& name) {
+    return product::ClassifyName(name) != product::FastenerKind::kNone ||
+           product::IsPinName(name) || IsWasherName(name);
+  };
+  return is_named(model.product->occurrences[id.index()].name) ||
+         is_named(model.product->part_of(id).name);
+}
+
+/** A part that each part would lock out, were it there before: it stands in all of its ways.
+ Fasteners do not count: whether they are needed is asked themselves. */
+std::map<OccurrenceId, OccurrenceId> FindLockedOut(const Model& model, const OrderPlan& plan) {
+  std::map<OccurrenceId, OccurrenceId> locked;
+  for (const OrderArrow& arrow : ListArrows(plan.rules)) {
+    const OccurrenceId first = plan.rules.moves[arrow.first].parts.front();
+    if (arrow.is_certain && !arrow.is_implied && !IsFastener(model, first)) {
+      locked.emplace(plan.rules.moves[arrow.then].parts.front(), first);
     }
   }
   return locked;
 }
 
-bool IsFastener(const Model& model, const Coming& coming) {
-  const product::Occurrence& occurrence = model.product->occurrences[coming.part.index()];
-  const product::Part& part = model.product->part_of(coming.part);
-  const auto is_named = [](const std::string& name) {
-    return product::ClassifyName(name) != product::FastenerKind::kNone || product::IsPinName(name);
-  };
-  return is_named(occurrence.name) || is_named(part.name);
-}
-
 NeedOfPart FindNeed(const Model& model, const Coming& coming,
-                    const std::map<OccurrenceId, OccurrenceId>& locked_in) {
+                    const std::map<OccurrenceId, OccurrenceId>& locked_out) {
   NeedOfPart need;
   need.is_first = coming.is_base && coming.part == simulation::FindBase(model.sequence);
-  need.is_fastener = IsFastener(model, coming);
+  need.is_fastener = IsFastener(model, coming.part);
   if (need.is_fastener) {
     return need;
   }
   need.moves = FindTurning(model, coming.part);
   need.material = FindOtherMaterial(model, coming.part);
-  if (const auto found = locked_in.find(coming.part); found != locked_in.end()) {
+  if (const auto found = locked_out.find(coming.part); found != locked_out.end()) {
     need.apart = fmt::format("{} could not be put in behind it", PathOf(model, found->second));
   }
   return need;
@@ -350,23 +383,24 @@ class AdviceFinder {
 
   void TryFewer(std::size_t i, const RatedParts& rated) {
     constexpr int kEnoughScrews = 2;  // They hold a part in its plane: a choice.
-    DfaRow row = rating_.sheet.rows[i];
+    const DfaRow& row = rating_.sheet.rows[i];
     const std::string name = PathOf(model_, rated.parts.front());
     if (rated.need.is_fastener && row.count > kEnoughScrews) {
-      const int all = row.count;
-      row.count = kEnoughScrews;
-      Try(i, row, fmt::format("{} fasteners like {} instead of {}", kEnoughScrews, name, all));
+      DfaRow fewer = row;
+      fewer.count = kEnoughScrews;
+      Try(i, fewer,
+          fmt::format("{} fasteners like {} instead of {}", kEnoughScrews, name, row.count));
     }
     if (!rated.need.is_needed()) {
-      const int all = row.count;
-      row.count = 0;
-      Try(i, row,
+      DfaRow gone = row;
+      gone.count = 0;
+      const std::string more = row.count == 1 ? "" : fmt::format(" (and {} more)", row.count - 1);
+      Try(i, gone,
           rated.need.is_fastener
-              ? fmt::format("snap fits or one piece instead of {} like {}",
-                            all == 1 ? "the fastener" : fmt::format("{} fasteners", all), name)
-              : fmt::format("make {} one with a neighbour{}: nothing says that it has to be a part "
+              ? fmt::format("snap fits, or one piece, instead of {}{}", name, more)
+              : fmt::format("make {}{} one with a neighbour: nothing says that it has to be a part "
                             "of its own",
-                            name, all == 1 ? "" : fmt::format(" (and {} more)", all - 1)));
+                            name, more));
     }
   }
 
@@ -433,17 +467,17 @@ class AdviceFinder {
 
 Result<DfaRating> RateAssembly(const Model& model, const OrderPlan& plan) {
   DfaRating rating;
-  const std::map<OccurrenceId, OccurrenceId> locked_in = FindLockedIn(plan);
+  const std::map<OccurrenceId, OccurrenceId> locked_out = FindLockedOut(model, plan);
+  SymmetryFinder symmetries(*model.product);
   std::map<std::tuple<product::PartId, std::string, std::string, bool>, std::size_t> group_of;
   for (const Coming& coming : ListComing(model, plan)) {
     const product::Occurrence& occurrence = model.product->occurrences[coming.part.index()];
     RatedParts rated;
     rated.parts = {coming.part};
-    rated.symmetry = FindSymmetry(model.product->part_of(coming.part),
-                                  occurrence.X_WB.q().conjugate() * coming.way_W);
+    rated.symmetry = symmetries.Find(coming.part, occurrence.X_WB.q().conjugate() * coming.way_W);
     RateHandling(model, coming, &rated);
     RateInsertion(model, coming, &rated);
-    rated.need = FindNeed(model, coming, locked_in);
+    rated.need = FindNeed(model, coming, locked_out);
     const auto [group, is_new] = group_of.try_emplace(
         {occurrence.part, rated.handling, rated.insertion, rated.need.is_needed()},
         rating.groups.size());

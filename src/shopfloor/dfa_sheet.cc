@@ -38,42 +38,58 @@ bool IsCode(std::string_view code) {
          std::isdigit(static_cast<unsigned char>(code[1])) != 0;
 }
 
+/** What stands in different parts of a chart does not compare: handling with one hand (0 to 3),
+ with an aid (4 to 7), with two hands (8, 9). */
+int HandlingClassOf(char digit) {
+  return digit < '4' ? 0 : digit < '8' ? 1 : 2;
+}
+
+/** Added (0 to 2), secured at once (3 to 5), a separate operation. */
+int InsertionClassOf(char digit) {
+  return digit < '3' ? 0 : digit < '6' ? 1 : 2;
+}
+
 // How difficult the second digit of a code says a part to be, by digit: a thin part of more than
 // 6 mm is easier to grasp than a thick one of less.
 using Ranks = std::array<int, 10>;
 constexpr Ranks kHandlingRanks{0, 1, 3, 2, 4, 5, 6, 8, 7, 9};
 constexpr Ranks kInsertionRanks{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
 
+template <typename Class>
 std::optional<CodeTime> FindTime(std::span<const Timed> table, const Ranks& ranks,
-                                 std::string_view code) {
+                                 const Class& class_of, std::string_view code) {
   if (!IsCode(code)) {
     return std::nullopt;
   }
   const auto rank_of = [&ranks](std::string_view of) {
     return ranks[static_cast<std::size_t>(of[1] - '0')];
   };
-  const Timed* least = nullptr;
+  const Timed* harder = nullptr;   // Harder in both digits, the one of the least time.
+  const Timed* hardest = nullptr;  // The one of the most time of those of its class.
   for (const Timed& entry : table) {
     if (entry.code == code) {
       return CodeTime{entry.seconds, std::string(code)};
     }
-    const bool is_harder = entry.code[0] >= code[0] && rank_of(entry.code) >= rank_of(code);
-    if (is_harder && (least == nullptr || entry.seconds < least->seconds)) {
-      least = &entry;
+    if (class_of(entry.code[0]) != class_of(code[0])) {
+      continue;
     }
+    const bool is_harder = entry.code[0] >= code[0] && rank_of(entry.code) >= rank_of(code);
+    harder = is_harder && (harder == nullptr || entry.seconds < harder->seconds) ? &entry : harder;
+    hardest = hardest == nullptr || entry.seconds > hardest->seconds ? &entry : hardest;
   }
-  return least == nullptr ? std::nullopt
-                          : std::optional(CodeTime{least->seconds, std::string(least->code)});
+  const Timed* taken = harder != nullptr ? harder : hardest;
+  return taken == nullptr ? std::nullopt
+                          : std::optional(CodeTime{taken->seconds, std::string(taken->code)});
 }
 
 }  // namespace
 
 std::optional<CodeTime> FindHandlingTime(std::string_view code) {
-  return FindTime(kHandling, kHandlingRanks, code);
+  return FindTime(kHandling, kHandlingRanks, HandlingClassOf, code);
 }
 
 std::optional<CodeTime> FindInsertionTime(std::string_view code) {
-  return FindTime(kInsertion, kInsertionRanks, code);
+  return FindTime(kInsertion, kInsertionRanks, InsertionClassOf, code);
 }
 
 std::string DescribeHandling(std::string_view code) {

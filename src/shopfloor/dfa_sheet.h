@@ -21,13 +21,13 @@ inline constexpr double kIdealSecondsRounded = 3.0;
 /** Time of a code. */
 struct CodeTime {
   double seconds{0};  ///< [s]
-  /** The code whose time this is, where none is public for that asked for: the next one that is
-   more difficult; else equal to it. */
+  /** The code whose time this is: another one where none is public for that asked for. */
   std::string code;
 };
 
 /** Finds the time of a code of two digits. For a code without a public time it is the least of
- those that are more difficult in both digits; none where there is none, or the text is no code. */
+ those that are more difficult in both digits, or where there is none the longest of its part of the
+ chart. None where that has no times, or the text is no code. */
 [[nodiscard]] std::optional<CodeTime> FindHandlingTime(std::string_view code);
 [[nodiscard]] std::optional<CodeTime> FindInsertionTime(std::string_view code);
 

@@ -56,6 +56,21 @@ std::vector<Vec3> SampleSurface(const product::Mesh& mesh) {
   return points;
 }
 
+/** The centroid of a surface, which each rotation that repeats the part leaves where it is. */
+Vec3 CalcCentroid(const product::Mesh& mesh) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3& b = mesh.vertices[t[1]];
+    const Vec3& c = mesh.vertices[t[2]];
+    const double own = 0.5 * (b - a).cross(c - a).norm();
+    sum += own / 3 * (a + b + c);
+    area += own;
+  }
+  return area > 0 ? Vec3(sum / area) : sum;
+}
+
 contact::ShapeSource MakeSource(const product::Mesh& mesh) {
   contact::ShapeSource source;
   source.vertices = mesh.vertices;
@@ -69,10 +84,14 @@ contact::ShapeSource MakeSource(const product::Mesh& mesh) {
 class RepeatCheck {
  public:
   explicit RepeatCheck(const product::Part& part)
-      : centre_B_(part.box_B.centre()),
+      : centre_B_(CalcCentroid(part.mesh)),
         tolerance_(std::max(kSmall, kSmallShare * part.box_B.size().maxCoeff())),
         points_(SampleSurface(part.mesh)),
         field_(MakeSource(part.mesh), 2 * tolerance_, 4 * tolerance_, 1) {
+    for (const Vec3& p_B : points_) {
+      spread_ += (p_B - centre_B_) * (p_B - centre_B_).transpose();
+    }
+    spread_ /= static_cast<double>(std::max<std::size_t>(1, points_.size()));
     // Points that are far out tell soonest that a rotation repeats nothing.
     std::stable_sort(points_.begin(), points_.end(), [this](const Vec3& a, const Vec3& b) {
       return (a - centre_B_).squaredNorm() > (b - centre_B_).squaredNorm();
@@ -84,6 +103,13 @@ class RepeatCheck {
   [[nodiscard]] bool Repeats(const Vec3& axis_B, double angle) const {
     constexpr double kMostOff = 0.01;  // Share of the points: a choice, as an engraving has.
     const Quat turn(Eigen::AngleAxisd(angle, axis_B));
+    const Mat3 R = turn.toRotationMatrix();
+    // Most turns are told by the second moments, which one that repeats the part leaves as they
+    // are.
+    constexpr double kOtherSpread = 0.05;  // Share of their sum: more than details have. A choice.
+    if ((R * spread_ * R.transpose() - spread_).norm() > kOtherSpread * spread_.trace()) {
+      return false;
+    }
     const auto most = static_cast<std::size_t>(kMostOff * static_cast<double>(points_.size()));
     std::size_t off = 0;
     for (const Vec3& p_B : points_) {
@@ -99,6 +125,7 @@ class RepeatCheck {
  private:
   Vec3 centre_B_;
   double tolerance_;
+  Mat3 spread_{Mat3::Zero()};  // Second moments of the points about their centre [m^2].
   std::vector<Vec3> points_;
   sweep::PartField field_;
 };
@@ -114,7 +141,11 @@ int FindLeastTurn(const RepeatCheck& check, const Vec3& axis_B, int most_fold) {
   }
   for (int fold = most_fold; fold >= 2; --fold) {
     const double turn = 2 * std::numbers::pi / fold;
-    if (check.Repeats(axis_B, turn) && check.Repeats(axis_B, 2 * turn)) {
+    bool repeats = true;
+    for (int times = 1; repeats && times <= fold / 2; ++times) {
+      repeats = check.Repeats(axis_B, times * turn);
+    }
+    if (repeats) {
       return static_cast<int>(std::lround(360.0 / fold));
     }
   }

@@ -16,7 +16,7 @@ struct PartSymmetry {
   bool operator==(const PartSymmetry&) const = default;
 };
 
-/** Finds the symmetry of a part by turning points of its surface about the middle of its box and
+/** Finds the symmetry of a part by turning points of its surface about its centroid and
  measuring how far they then are from it: within 1 % of the part's size, or 0.2 mm for parts of less
  than 20 mm, they repeat it. What is smaller, as a chamfer or an engraving, makes no difference.
  @param way_B  Way of insertion, unit. */

@@ -14,6 +14,7 @@
 #include "app/output/text_table.h"
 #include "base/units.h"
 #include "pages/html_page.h"
+#include "shopfloor/order_arrow.h"
 
 namespace hvas::app {
 namespace {
@@ -21,67 +22,29 @@ namespace {
 using pages::Escape;
 using pages::MakeTile;
 using product::OccurrenceId;
+using shopfloor::ArrowReason;
+using shopfloor::ListArrows;
+using shopfloor::OrderArrow;
 using simulation::FoundOrder;
 using simulation::FreeMove;
-using simulation::Obstacle;
 using simulation::OrderCounts;
-using simulation::OrderedWay;
 
-/** What has to come before what: a move, and a part that would stand in its planned way. */
-struct Arrow {
-  std::size_t first;
-  std::size_t then;
-  const Obstacle* obstacle;  // Null: the move goes only as planned.
-  bool is_certain;           // It stands in every way of the move.
-  bool is_implied{false};    // Two other arrows say the same.
-};
-
-std::vector<Arrow> ListArrows(const assembly::OrderPlan& plan) {
-  std::vector<Arrow> arrows;
-  for (std::size_t m = 0; m < plan.rules.moves.size(); ++m) {
-    const FreeMove& move = plan.rules.moves[m];
-    for (const std::size_t other : move.ways.front().moves) {
-      const bool is_certain =
-          std::all_of(move.ways.begin(), move.ways.end(), [other](const OrderedWay& way) {
-            return std::binary_search(way.moves.begin(), way.moves.end(), other);
-          });
-      const std::vector<OccurrenceId>& parts = plan.rules.moves[other].parts;
-      const std::vector<Obstacle>& obstacles = move.ways.front().obstacles;
-      const auto found = std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& o) {
-        return std::find(parts.begin(), parts.end(), o.occurrence) != parts.end();
-      });
-      arrows.push_back({m, other, found == obstacles.end() ? nullptr : &*found, is_certain});
-    }
+std::string DescribeReason(const PlanReport& report, const OrderArrow& arrow) {
+  const auto other = [&] { return PathOf(*report.model, arrow.other); };
+  switch (arrow.reason) {
+    case ArrowReason::kMeets:
+      return fmt::format("it would meet {} {:.1f} mm before its place", other(),
+                         units::ToMm(arrow.travelled));
+    case ArrowReason::kMate:
+      return fmt::format("a mate with {} leaves it no way in", other());
+    case ArrowReason::kMovedAside:
+      return fmt::format("{} is moved aside for it, which was found without it", other());
+    case ArrowReason::kGiving:
+      return "parts give on its way, which was found without it";
+    case ArrowReason::kTurning:
+      return "its way turns, and was found without it";
   }
-  std::vector<std::vector<std::size_t>> after(plan.rules.moves.size());
-  for (const Arrow& arrow : arrows) {
-    after[arrow.first].push_back(arrow.then);
-  }
-  for (Arrow& arrow : arrows) {
-    const std::vector<std::size_t>& others = after[arrow.first];
-    arrow.is_implied = std::any_of(others.begin(), others.end(), [&](std::size_t between) {
-      const std::vector<std::size_t>& next = after[between];
-      return std::find(next.begin(), next.end(), arrow.then) != next.end();
-    });
-  }
-  return arrows;
-}
-
-std::string DescribeReason(const PlanReport& report, const Arrow& arrow) {
-  const FreeMove& move = report.plan->rules.moves[arrow.first];
-  if (arrow.obstacle == nullptr && move.aside) {
-    return fmt::format("{} is moved aside for it, which was found without it",
-                       PathOf(*report.model, move.aside->occurrence));
-  }
-  if (arrow.obstacle == nullptr) {
-    return move.ways.front().step.way.empty() ? "parts give on its way, which was found without it"
-                                              : "its way turns, and was found without it";
-  }
-  const std::string& other = PathOf(*report.model, arrow.obstacle->occurrence);
-  return arrow.obstacle->mate.is_valid()
-             ? fmt::format("a mate with {} leaves it no way in", other)
-             : fmt::format("it would meet {} {:.1f} mm before its place", other,
-                           units::ToMm(arrow.obstacle->travelled));
+  return {};
 }
 
 nlohmann::ordered_json MakeIds(const std::vector<OccurrenceId>& ids) {
@@ -180,7 +143,7 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
 
 nlohmann::ordered_json MakeArrowsJson(const PlanReport& report) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const Arrow& arrow : ListArrows(*report.plan)) {
+  for (const OrderArrow& arrow : ListArrows(report.plan->rules)) {
     const auto leader = [&](std::size_t move) {
       return report.plan->rules.moves[move].parts.front().value();
     };
@@ -262,14 +225,14 @@ struct MoveRow {
   std::string turned;         // The side that is then upwards; empty: it is not turned before it.
   std::string in_tool_space;  // Says what stands where the tool turns; empty: nothing does.
   std::string holds;          // What has to be held after it; empty: nothing, or not known.
-  std::vector<Arrow> arrows;  // What it has to come before, but for what others imply.
+  std::vector<OrderArrow> arrows;  // What it has to come before, but for what others imply.
 };
 
 std::vector<MoveRow> ListRows(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
   const FoundOrder& best = BestOf(plan);
-  const std::vector<Arrow> arrows = ListArrows(plan);
+  const std::vector<OrderArrow> arrows = ListArrows(plan.rules);
   std::vector<MoveRow> rows;
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const std::size_t m = best.moves[i];
@@ -294,13 +257,13 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     const auto& holds = HoldsAfter(plan, i);
     row.holds = holds ? DescribeParts(model, *holds) : "";
     std::copy_if(arrows.begin(), arrows.end(), std::back_inserter(row.arrows),
-                 [m](const Arrow& arrow) { return arrow.first == m && !arrow.is_implied; });
+                 [m](const OrderArrow& arrow) { return arrow.first == m && !arrow.is_implied; });
   }
   return rows;
 }
 
 /** The leading part of what comes after a move. */
-const std::string& PathOfLater(const PlanReport& report, const Arrow& arrow) {
+const std::string& PathOfLater(const PlanReport& report, const OrderArrow& arrow) {
   return PathOf(*report.model, report.plan->rules.moves[arrow.then].parts.front());
 }
 
@@ -316,17 +279,17 @@ std::string MakeOrderTable(const PlanReport& report) {
   int number = 0;
   for (const MoveRow& row : ListRows(report)) {
     std::string before;
-    for (const Arrow& arrow : row.arrows) {
-      if (arrow.obstacle == nullptr) {
+    for (const OrderArrow& arrow : row.arrows) {
+      if (arrow.reason != ArrowReason::kMeets && arrow.reason != ArrowReason::kMate) {
         continue;
       }
-      before += fmt::format("{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
-                            Escape(PathOfLater(report, arrow)),
-                            arrow.obstacle->mate.is_valid()
-                                ? "a mate leaves no way in"
-                                : fmt::format("met {:.1f} mm before the place",
-                                              units::ToMm(arrow.obstacle->travelled)),
-                            arrow.is_certain ? "" : ", on this way");
+      before += fmt::format(
+          "{}{}<span class=\"soft\">, {}{}</span>", before.empty() ? "" : "<br>",
+          Escape(PathOfLater(report, arrow)),
+          arrow.reason == ArrowReason::kMate
+              ? "a mate leaves no way in"
+              : fmt::format("met {:.1f} mm before the place", units::ToMm(arrow.travelled)),
+          arrow.is_certain ? "" : ", on this way");
     }
     if (!row.turned.empty()) {
       html += fmt::format(
@@ -418,7 +381,7 @@ void PrintPlanTable(const PlanReport& report) {
   for (const MoveRow& row : ListRows(report)) {
     std::string below;
     if (!row.arrows.empty()) {
-      const Arrow& first = row.arrows.front();
+      const OrderArrow& first = row.arrows.front();
       below =
           fmt::format("before {}: {}", PathOfLater(report, first), DescribeReason(report, first));
       below +=

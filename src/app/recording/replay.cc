@@ -46,7 +46,7 @@ double CalcSpeed(const ReplayReport& report) {
          static_cast<double>(std::max<std::int64_t>(1, report.wall_ns));
 }
 
-const std::string& PathOf(const Model& model, const ReplayedPart& part) {
+const std::string& PathOfReplayed(const Model& model, const ReplayedPart& part) {
   return model.product->occurrences[part.occurrence.index()].path;
 }
 
@@ -57,7 +57,7 @@ nlohmann::ordered_json MakeOutcomeJson(const ReplayedPart::Outcome& outcome) {
           {"seated", outcome.is_seated}};
 }
 
-void PrintJson(const Model& model, const record::Reader& reader, const Outcome& outcome) {
+void PrintReplayJson(const Model& model, const record::Reader& reader, const Outcome& outcome) {
   const ReplayReport& report = outcome.report;
   nlohmann::ordered_json json{{"product", model.product->name},
                               {"complete", reader.is_complete()},
@@ -83,7 +83,7 @@ void PrintJson(const Model& model, const record::Reader& reader, const Outcome& 
   nlohmann::ordered_json& parts = json["parts"] = nlohmann::ordered_json::array();
   for (const ReplayedPart& part : report.parts) {
     parts.push_back({{"occurrence", part.occurrence.value()},
-                     {"path", PathOf(model, part)},
+                     {"path", PathOfReplayed(model, part)},
                      {"held_s", Seconds(part.held_ns)},
                      {"recorded", MakeOutcomeJson(part.recorded)},
                      {"replayed", MakeOutcomeJson(part.replayed)}});
@@ -105,7 +105,7 @@ void PrintParts(const Model& model, const ReplayReport& report) {
     const auto peak = both(before.peak_true, after.peak_true);
     const auto felt = both(before.peak_felt, after.peak_felt);
     const auto depth = both(units::ToMm(before.depth), units::ToMm(after.depth));
-    table.Add({PathOf(model, part), peak[0], peak[1], felt[0], felt[1], depth[0], depth[1],
+    table.Add({PathOfReplayed(model, part), peak[0], peak[1], felt[0], felt[1], depth[0], depth[1],
                place(before), place(after)});
   }
   fmt::print("\n{}", table.ToText());
@@ -176,7 +176,7 @@ int RunReplay(const ReplayArguments& arguments) {
   }
   outcome.report = std::move(*report);
   if (arguments.is_json) {
-    PrintJson(**model, *reader, outcome);
+    PrintReplayJson(**model, *reader, outcome);
   } else {
     PrintText(**model, *reader, outcome);
   }

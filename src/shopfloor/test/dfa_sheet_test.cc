@@ -77,10 +77,10 @@ TEST(DfaSheetTest, EveryCodeThatGeometryGivesHasATime) {
 TEST(DfaSheetTest, TellsTheRowThatIsWrong) {
   for (const DfaRow& bad : {DfaRow{"Lid", 1, "3", "00", 1}, DfaRow{"Lid", 1, "30", "ab", 1},
                             DfaRow{"Lid", 0, "30", "00", 0}, DfaRow{"Lid", 1, "30", "00", 2},
-                            DfaRow{"Lid", 1, "99", "00", 1}}) {
+                            DfaRow{"Lid", 1, "30", "90", 1}}) {
     const auto sheet = MakeDfaSheet({bad});
     ASSERT_FALSE(sheet);
-    EXPECT_EQ(sheet.error().entity, "Lid");
+    EXPECT_EQ(sheet.error().where, "Lid");
   }
   EXPECT_EQ(MakeDfaSheet({})->CalcIndex(3), 0);
 }

@@ -1,0 +1,214 @@
+#include "shopfloor/instruction_words.h"
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace hvas::shopfloor {
+namespace {
+
+using simulation::MotionPurpose;
+
+constexpr InstructionWords kEnglish{
+    .title = "{}: work instructions",
+    .parts = "parts",
+    .steps = "steps",
+    .tools = "tools",
+    .time = "time of the hands, about",
+    .turns = "turns of the product",
+    .left_out = "parts without a way in",
+    .bill = "Bill of parts",
+    .position = "item",
+    .name = "part",
+    .count = "quantity",
+    .mass = "mass of one [g]",
+    .material = "material",
+    .step = "Step {}",
+    .first_part = "Put {} into the fixture",
+    .lay_aside = "Lay the finished subassembly with {} aside",
+    .insert = "Insert {}",
+    .insert_many = "Insert {} pieces: {}",
+    .with_others = "with {} more parts of its subassembly",
+    .turn_product = "First turn the product, as the picture shows.",
+    .way = "Way",
+    .from_above = "from above, along the arrow",
+    .from_below = "from below, along the arrow",
+    .from_side = "from the side, along the arrow",
+    .oblique = "obliquely, along the arrow",
+    .turning_way = "tilt and turn it in; the picture shows where its way begins",
+    .fit = "Fit",
+    .fit_in = "{}, {}, with {}",
+    .clearance = "clearance",
+    .transition = "transition",
+    .interference = "interference",
+    .proposed = " (proposed)",
+    .force = "Force",
+    .press = "{:.3g} N: use a press or a mallet",
+    .by_hand = "{:.3g} N, by hand",
+    .tool = "Tool",
+    .torque = "Tighten",
+    .tighten = "{} to {:.3g} N m (preload {:.3g} kN)",
+    .run_in = "{}: run in to the seat",
+    .turns_of = ", about {:.0f} turns",
+    .hold = "Hold",
+    .until = "{}, until it is secured",
+    .aside = "Move aside",
+    .moved_aside = "{}, and back afterwards",
+    .order = "Order matters",
+    .before_meets = "before {}: afterwards it would meet {}",
+    .before_mate = "before {}: afterwards {} leaves it no way in",
+    .before_other = "before {}: no way in was found afterwards",
+    .seconds = "{:.1f} s",
+    .time_note =
+        "Times by MODAPTS, 0.129 s a MOD, for a trained hand without allowances: an estimate "
+        "from distances, weights, sizes and fits, not measured.",
+    .elements = "Motions",
+    .left_out_note = "No way in was found for these parts. Insert them by your own judgement:",
+    .picture = "What is there, and {} before its place, with its way as an arrow",
+    .view3d = "In three dimensions",
+    .previous = "Previous step",
+    .next = "Next step"};
+
+constexpr InstructionWords kGerman{
+    .title = "{}: Montageanweisung",
+    .parts = "Teile",
+    .steps = "Schritte",
+    .tools = "Werkzeuge",
+    .time = "Handzeit, etwa",
+    .turns = "Wendungen des Produkts",
+    .left_out = "Teile ohne Weg",
+    .bill = "Stückliste",
+    .position = "Pos.",
+    .name = "Teil",
+    .count = "Menge",
+    .mass = "Masse je Stück [g]",
+    .material = "Werkstoff",
+    .step = "Schritt {}",
+    .first_part = "{} in die Aufnahme legen",
+    .lay_aside = "Fertige Baugruppe mit {} ablegen",
+    .insert = "{} einsetzen",
+    .insert_many = "{} Stück einsetzen: {}",
+    .with_others = "mit {} weiteren Teilen seiner Baugruppe",
+    .turn_product = "Zuerst das Produkt wenden, wie im Bild.",
+    .way = "Weg",
+    .from_above = "von oben, entlang des Pfeils",
+    .from_below = "von unten, entlang des Pfeils",
+    .from_side = "von der Seite, entlang des Pfeils",
+    .oblique = "schräg, entlang des Pfeils",
+    .turning_way = "hineinkippen und drehen; das Bild zeigt, wo der Weg beginnt",
+    .fit = "Passung",
+    .fit_in = "{}, {}, mit {}",
+    .clearance = "Spielpassung",
+    .transition = "Übergangspassung",
+    .interference = "Presspassung",
+    .proposed = " (vorgeschlagen)",
+    .force = "Kraft",
+    .press = "{:.3g} N: Presse oder Schonhammer benutzen",
+    .by_hand = "{:.3g} N, von Hand",
+    .tool = "Werkzeug",
+    .torque = "Anziehen",
+    .tighten = "{} mit {:.3g} N m (Vorspannkraft {:.3g} kN)",
+    .run_in = "{}: bis zum Anliegen eindrehen",
+    .turns_of = ", etwa {:.0f} Umdrehungen",
+    .hold = "Halten",
+    .until = "{}, bis es gesichert ist",
+    .aside = "Beiseite",
+    .moved_aside = "{} beiseite bewegen, danach zurück",
+    .order = "Reihenfolge",
+    .before_meets = "vor {}: danach würde es an {} stoßen",
+    .before_mate = "vor {}: danach lässt {} keinen Weg frei",
+    .before_other = "vor {}: danach wurde kein Weg gefunden",
+    .seconds = "{:.1f} s",
+    .time_note =
+        "Zeiten nach MODAPTS, 0,129 s je MOD, für geübte Hände ohne Zuschläge: geschätzt aus "
+        "Entfernungen, Gewichten, Größen und Passungen, nicht gemessen.",
+    .elements = "Bewegungen",
+    .left_out_note = "Für diese Teile wurde kein Weg gefunden. Nach eigenem Ermessen einsetzen:",
+    .picture = "Was schon da ist, und {} vor seinem Platz, der Weg als Pfeil",
+    .view3d = "Räumlich",
+    .previous = "Schritt zurück",
+    .next = "Nächster Schritt"};
+
+std::string DescribeInEnglish(const simulation::HandMotion& motion) {
+  switch (motion.purpose) {
+    case MotionPurpose::kTurnProduct:
+      return "turn the product over";
+    case MotionPurpose::kOtherWay:
+      return "go to another side";
+    case MotionPurpose::kGetTool:
+      return "get the tool";
+    case MotionPurpose::kChangeTool:
+      return "lay the tool aside, get another one";
+    case MotionPurpose::kGoTo:
+      return fmt::format("reach for the part, {:.2f} m", motion.amount);
+    case MotionPurpose::kGet:
+      return fmt::format("grasp it, {:.0f} mm large", units::ToMm(motion.amount));
+    case MotionPurpose::kBring:
+      return fmt::format("bring it, {:.2f} m", motion.amount);
+    case MotionPurpose::kPut:
+      return "put it into its place";
+    case MotionPurpose::kLoad:
+      return fmt::format("its weight, {:.2g} kg", motion.amount);
+    case MotionPurpose::kReachIn:
+      return fmt::format("reach in by {:.0f} mm, and out again", units::ToMm(motion.amount));
+    case MotionPurpose::kToolOn:
+      return "put the tool on";
+    case MotionPurpose::kCrank:
+      return fmt::format("turn it in, {:.0f} turns", motion.amount);
+    case MotionPurpose::kPress:
+      return fmt::format("press it in, {:.3g} N", motion.amount);
+    case MotionPurpose::kHold:
+      return "hold against it with the other hand";
+  }
+  return {};
+}
+
+std::string DescribeInGerman(const simulation::HandMotion& motion) {
+  switch (motion.purpose) {
+    case MotionPurpose::kTurnProduct:
+      return "Produkt wenden";
+    case MotionPurpose::kOtherWay:
+      return "zu einer anderen Seite greifen";
+    case MotionPurpose::kGetTool:
+      return "Werkzeug holen";
+    case MotionPurpose::kChangeTool:
+      return "Werkzeug weglegen, anderes holen";
+    case MotionPurpose::kGoTo:
+      return fmt::format("zum Teil greifen, {:.2f} m", motion.amount);
+    case MotionPurpose::kGet:
+      return fmt::format("fassen, {:.0f} mm groß", units::ToMm(motion.amount));
+    case MotionPurpose::kBring:
+      return fmt::format("heranführen, {:.2f} m", motion.amount);
+    case MotionPurpose::kPut:
+      return "an seinen Platz setzen";
+    case MotionPurpose::kLoad:
+      return fmt::format("Gewicht, {:.2g} kg", motion.amount);
+    case MotionPurpose::kReachIn:
+      return fmt::format("{:.0f} mm hineinreichen und zurück", units::ToMm(motion.amount));
+    case MotionPurpose::kToolOn:
+      return "Werkzeug ansetzen";
+    case MotionPurpose::kCrank:
+      return fmt::format("eindrehen, {:.0f} Umdrehungen", motion.amount);
+    case MotionPurpose::kPress:
+      return fmt::format("einpressen, {:.3g} N", motion.amount);
+    case MotionPurpose::kHold:
+      return "mit der anderen Hand gegenhalten";
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* ToString(Language language) {
+  return language == Language::kGerman ? "de" : "en";
+}
+
+const InstructionWords& WordsOf(Language language) {
+  return language == Language::kGerman ? kGerman : kEnglish;
+}
+
+std::string DescribeMotion(const simulation::HandMotion& motion, Language language) {
+  return language == Language::kGerman ? DescribeInGerman(motion) : DescribeInEnglish(motion);
+}
+
+}  // namespace hvas::shopfloor
