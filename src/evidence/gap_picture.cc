@@ -52,7 +52,8 @@ std::vector<PictureBody> MakeBodies(const Model& model, const GapReason& reason)
     bodies.push_back({&model.product->part_of(id),
                       {X_WB.q(), Vec3(X_WB.p() + moved_W)},
                       is_own ? kPart : kOther,
-                      faces});
+                      faces,
+                      0});
   }
   return bodies;
 }
@@ -69,13 +70,16 @@ spatial::Box BoxOf(const std::vector<PictureBody>& bodies) {
  */
 Vec3 ChooseView(const std::vector<PictureBody>& bodies, const spatial::Box& box_W) {
   Vec3 best_W = UsualView();
-  double best = RateMarks(bodies, Projection(box_W, kTrialWidth, kTrialHeight, best_W));
+  const auto rate_view = [&](const Vec3& to_eye_W) {
+    return RateMarks(bodies, Projection(box_W, kTrialWidth, kTrialHeight, to_eye_W)).front();
+  };
+  double best = rate_view(best_W);
   constexpr int kTurns = 8;  // Steps of 45 degrees: a choice.
   for (const double height : {0.6, -0.6}) {
     for (int turn = 0; turn < kTurns; ++turn) {
       const double angle = 2 * std::numbers::pi * (turn + 0.4) / kTurns;
       const Vec3 to_eye_W(std::cos(angle), std::sin(angle), height);
-      const double rate = RateMarks(bodies, Projection(box_W, kTrialWidth, kTrialHeight, to_eye_W));
+      const double rate = rate_view(to_eye_W);
       constexpr double kBetter = 1.2;  // Unusual views are harder to read: a choice.
       if (rate > kBetter * best) {
         best = rate;

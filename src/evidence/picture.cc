@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <zlib.h>
 
@@ -23,13 +24,27 @@ struct Sample {
   std::uint32_t occurrence{std::numeric_limits<std::uint32_t>::max()};
   std::array<float, 3> normal{};
   std::array<float, 3> color{};
-  double mark_depth{std::numeric_limits<double>::infinity()};  // Of the nearest marked face.
+  /** Depths of the nearest marked faces, one of each group; infinite: none. */
+  std::array<double, kMarkGroups> mark_depth{std::numeric_limits<double>::infinity(),
+                                             std::numeric_limits<double>::infinity()};
 
-  [[nodiscard]] bool has_mark() const { return !std::isinf(mark_depth); }
+  [[nodiscard]] bool has_mark_of(std::size_t group) const { return !std::isinf(mark_depth[group]); }
 
-  [[nodiscard]] bool has_seen_mark() const { return has_mark() && mark_depth <= depth; }
+  [[nodiscard]] bool has_seen_mark_of(std::size_t group) const {
+    return has_mark_of(group) && mark_depth[group] <= depth;
+  }
+
+  [[nodiscard]] bool has_mark() const { return has_mark_of(0) || has_mark_of(1); }
+
+  [[nodiscard]] bool has_seen_mark() const { return has_seen_mark_of(0) || has_seen_mark_of(1); }
 
   [[nodiscard]] bool is_empty() const { return std::isinf(depth); }
+};
+
+/** Where a vertex is: in the world, and in the samples of the picture. */
+struct Place {
+  Vec3 p_W;
+  Vec3 p;
 };
 
 class Canvas {
@@ -45,6 +60,13 @@ class Canvas {
     // The mesh for the eye, or where there is none that for contact.
     const bool is_light = !part.display_mesh.triangles.empty();
     const product::Mesh& mesh = is_light ? part.display_mesh : part.mesh;
+    mark_group_ = body.mark_group;
+    places_.resize(mesh.vertices.size());
+    std::transform(mesh.vertices.begin(), mesh.vertices.end(), places_.begin(),
+                   [&](const Vec3& v_B) {
+                     const Vec3 p_W = body.X_WB * v_B;
+                     return Place{p_W, ProjectToSamples(p_W)};
+                   });
     for (std::size_t f = 0; f < part.faces.size(); ++f) {
       const product::Face& face = part.faces[f];
       const product::Color color = body.color.value_or(face.color.value_or(part.color));
@@ -52,11 +74,9 @@ class Canvas {
       const std::size_t count = is_light ? face.display_triangle_count : face.triangle_count;
       is_marked_ = std::binary_search(body.marked_faces.begin(), body.marked_faces.end(), f);
       for (std::size_t t = first; t < first + count; ++t) {
-        std::array<Vec3, 3> p_W;
-        for (std::size_t k = 0; k < 3; ++k) {
-          p_W[k] = body.X_WB * mesh.vertices[mesh.triangles[t][k]];
-        }
-        DrawTriangle(p_W, number, {color.r, color.g, color.b});
+        const auto& corners = mesh.triangles[t];
+        DrawTriangle({&places_[corners[0]], &places_[corners[1]], &places_[corners[2]]}, number,
+                     {color.r, color.g, color.b});
       }
     }
   }
@@ -67,12 +87,12 @@ class Canvas {
     }
   }
 
-  [[nodiscard]] double RateMarks() const {
+  [[nodiscard]] double RateMarks(std::size_t group) const {
     double marked = 0;
     double seen = 0;
     for (const Sample& sample : samples_) {
-      marked += sample.has_mark() ? 1 : 0;
-      seen += sample.has_seen_mark() ? 1 : 0;
+      marked += sample.has_mark_of(group) ? 1 : 0;
+      seen += sample.has_seen_mark_of(group) ? 1 : 0;
     }
     return marked > 0 ? seen / marked * seen / static_cast<double>(samples_.size()) : 0;
   }
@@ -90,25 +110,35 @@ class Canvas {
   }
 
  private:
-  void DrawTriangle(const std::array<Vec3, 3>& p_W, std::uint32_t occurrence,
+  /** Samples from the upper left, and depth away from the eye [m]. */
+  [[nodiscard]] Vec3 ProjectToSamples(const Vec3& p_WQ) const {
+    Vec3 p = projection_.Project(p_WQ);
+    p.head<2>() *= kSamples;
+    return p;
+  }
+
+  void DrawTriangle(const std::array<const Place*, 3>& corners, std::uint32_t occurrence,
                     const std::array<float, 3>& color) {
-    std::array<Vec3, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = projection_.Project(p_W[k]);
-      p[k].head<2>() *= kSamples;
-    }
-    const Vec3 normal = projection_.Turn((p_W[1] - p_W[0]).cross(p_W[2] - p_W[0])).normalized();
+    const std::array<Vec3, 3> p{corners[0]->p, corners[1]->p, corners[2]->p};
     const double area = (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) -
                         (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
-    if (!(std::abs(area) > 0) || !normal.allFinite()) {
-      return;
-    }
     const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
     const auto [top, bottom] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
-    const int x_end = std::min(width_ - 1, static_cast<int>(std::ceil(right)));
+    const bool is_outside = right < -1 || bottom < -1 || left > width_ || top > height_;
+    if (!(std::abs(area) > 0) || is_outside) {
+      return;
+    }
+    const Vec3& origin_W = corners[0]->p_W;
+    const Vec3 normal =
+        projection_.Turn((corners[1]->p_W - origin_W).cross(corners[2]->p_W - origin_W))
+            .normalized();
+    if (!normal.allFinite()) {
+      return;
+    }
     const int y_end = std::min(height_ - 1, static_cast<int>(std::ceil(bottom)));
     for (int y = std::max(0, static_cast<int>(top)); y <= y_end; ++y) {
-      for (int x = std::max(0, static_cast<int>(left)); x <= x_end; ++x) {
+      const auto [first, last] = SpanOf(p, y + 0.5);
+      for (int x = first; x <= last; ++x) {
         const Vec3 share = SharesAt(p, area, x + 0.5, y + 0.5);
         const double depth = share.x() * p[0].z() + share.y() * p[1].z() + share.z() * p[2].z();
         if (share.minCoeff() >= 0) {
@@ -123,9 +153,36 @@ class Canvas {
     }
   }
 
+  /** The samples of a row that may lie in a triangle, first and last: thin triangles have few of
+   those that the box around them has. Empty where the last is before the first. */
+  [[nodiscard]] std::pair<int, int> SpanOf(const std::array<Vec3, 3>& p, double y) const {
+    double low = width_;
+    double high = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& a = p[k];
+      const Vec3& b = p[(k + 1) % 3];
+      if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) {
+        continue;
+      }
+      const double height = b.y() - a.y();
+      const double share = height != 0 ? (y - a.y()) / height : 0;
+      const double other = height != 0 ? share : 1;  // A level edge: both of its ends.
+      for (const double x : {a.x() + share * (b.x() - a.x()), a.x() + other * (b.x() - a.x())}) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+    // One more on each side than rounding may cost.
+    const double most = width_ - 1;
+    return {static_cast<int>(std::clamp(low - 1.5, 0.0, most + 1)),
+            static_cast<int>(std::clamp(high + 1.5, -1.0, most))};
+  }
+
   void Put(const Sample& drawn, Sample* sample) const {
-    const double mark_depth =
-        is_marked_ ? std::min(sample->mark_depth, drawn.depth) : sample->mark_depth;
+    std::array<double, kMarkGroups> mark_depth = sample->mark_depth;
+    if (is_marked_) {
+      mark_depth[mark_group_] = std::min(mark_depth[mark_group_], drawn.depth);
+    }
     if (drawn.depth < sample->depth) {
       *sample = drawn;
     }
@@ -194,8 +251,10 @@ class Canvas {
   const Projection& projection_;
   int width_;
   int height_;
-  bool is_marked_{false};  // The face that is being drawn.
+  bool is_marked_{false};      // The face that is being drawn.
+  std::size_t mark_group_{0};  // That of the body that is being drawn.
   std::vector<Sample> samples_;
+  std::vector<Place> places_;  // Those of the vertices of the body that is drawn.
 };
 
 void AppendNumber(std::uint32_t value, std::string* bytes) {
@@ -272,10 +331,11 @@ std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
   return pixels;
 }
 
-double RateMarks(const std::vector<PictureBody>& bodies, const Projection& projection) {
+std::array<double, kMarkGroups> RateMarks(const std::vector<PictureBody>& bodies,
+                                          const Projection& projection) {
   Canvas canvas(projection);
   canvas.Draw(bodies);
-  return canvas.RateMarks();
+  return {canvas.RateMarks(0), canvas.RateMarks(1)};
 }
 
 std::string MakePicture(const product::Product& product, const Projection& projection) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,12 +40,16 @@ class Projection {
   int height_;
 };
 
+/** Marks of several groups are rated apart. */
+inline constexpr std::size_t kMarkGroups = 2;
+
 /** A part somewhere in a picture. */
 struct PictureBody {
   const product::Part* part{nullptr};
   spatial::Pose X_WB;
   std::optional<product::Color> color;      ///< None: those of the part and its faces.
   std::vector<std::uint32_t> marked_faces;  ///< Sorted. Red, also through what hides them.
+  std::size_t mark_group{0};                ///< Its marks count in this group; below kMarkGroups.
 };
 
 /** Parts, shaded, with edges, before nothing, as a PNG file: smooth at the edges, the same bytes
@@ -56,10 +62,10 @@ struct PictureBody {
 [[nodiscard]] std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
                                                    const Projection& projection);
 
-/** The share of the marked faces in the projection that nothing hides, times the share of the
- picture that they fill. */
-[[nodiscard]] double RateMarks(const std::vector<PictureBody>& bodies,
-                               const Projection& projection);
+/** For each group of marks, the share of the marked faces in the projection that nothing hides,
+ times the share of the picture that they fill. */
+[[nodiscard]] std::array<double, kMarkGroups> RateMarks(const std::vector<PictureBody>& bodies,
+                                                        const Projection& projection);
 
 /** A product as drawn, as MakePicture() of its parts. */
 [[nodiscard]] std::string MakePicture(const product::Product& product,

@@ -7,13 +7,25 @@
 
 namespace hvas::pages {
 
+std::string EncodeBase64(std::string_view bytes) {
+  constexpr std::size_t kPiece = 3
+                                 << 20;  // The library counts in int; multiples of 3 can be joined.
+  std::string text;
+  text.reserve(4 * (bytes.size() / 3 + 1));
+  std::string piece;
+  for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+    const std::string_view part = bytes.substr(at, kPiece);
+    piece.resize(4 * ((part.size() + 2) / 3) + 1);  // With the zero that it ends by.
+    const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(piece.data()),
+                                       reinterpret_cast<const unsigned char*>(part.data()),
+                                       static_cast<int>(part.size()));
+    text.append(piece, 0, static_cast<std::size_t>(length));
+  }
+  return text;
+}
+
 std::string MakePngAddress(std::string_view png) {
-  std::string text(4 * ((png.size() + 2) / 3) + 1, '\0');  // With the zero that it ends by.
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                     reinterpret_cast<const unsigned char*>(png.data()),
-                                     static_cast<int>(png.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return "data:image/png;base64," + text;
+  return "data:image/png;base64," + EncodeBase64(png);
 }
 
 std::string MakeImage(std::string_view png, std::string_view alt, int width, int height) {

@@ -5,6 +5,9 @@
 
 namespace hvas::pages {
 
+/** Bytes as text (RFC 4648, section 4). */
+[[nodiscard]] std::string EncodeBase64(std::string_view bytes);
+
 /** Address of a PNG file that has the file in itself ("data:image/png;base64,..."), for pages that
  need nothing else. */
 [[nodiscard]] std::string MakePngAddress(std::string_view png);

@@ -53,7 +53,7 @@ class PageMaker {
       body += fmt::format("<section class=\"viewer\"><h2>{}</h2>{}</section>\n", words_.view3d,
                           options_.viewer);
     }
-    body += fmt::format("<h2>{}</h2>\n", words_.steps);
+    body += fmt::format("<h2>{}</h2>\n", words_.work);
     for (std::size_t i = 0; i < plan_.steps.size(); ++i) {
       if (options_.stop.stop_requested()) {
         return Fail(ErrorCode::kCancelled, "the instructions were stopped before their last step",
@@ -71,17 +71,11 @@ class PageMaker {
 
  private:
   [[nodiscard]] std::string NameOf(OccurrenceId id) const {
-    const product::Occurrence& occurrence = model_.product->occurrences[id.index()];
-    return Escape(occurrence.name.empty() ? occurrence.path : occurrence.name);
+    return Escape(ShortNameOf(model_, id));
   }
 
   [[nodiscard]] std::string NamesOf(const std::vector<OccurrenceId>& parts) const {
-    constexpr std::size_t kNamed = 4;  // As many as fit into a line: a choice.
-    std::string names;
-    for (std::size_t i = 0; i < std::min(kNamed, parts.size()); ++i) {
-      names += (i == 0 ? "" : ", ") + NameOf(parts[i]);
-    }
-    return parts.size() > kNamed ? names + fmt::format(" (+{})", parts.size() - kNamed) : names;
+    return Escape(ShortNamesOf(model_, parts));
   }
 
   [[nodiscard]] std::string MakeTiles() const {
@@ -126,27 +120,6 @@ class PageMaker {
           ++position, Escape(line.name), line.count, 1e3 * line.mass, Escape(line.material));
     }
     return html + "</table></div>\n";
-  }
-
-  [[nodiscard]] std::string MakeTitle(const WorkStep& step) const {
-    const std::string name = NameOf(step.leading.front());
-    switch (step.kind) {
-      case WorkStep::Kind::kBase:
-        return fmt::format(fmt::runtime(words_.first_part), name);
-      case WorkStep::Kind::kLayAside:
-        return fmt::format(fmt::runtime(words_.lay_aside), name);
-      case WorkStep::Kind::kInsert:
-        break;
-    }
-    if (step.leading.size() > 1) {
-      return fmt::format(fmt::runtime(words_.insert_many), step.leading.size(),
-                         NamesOf(step.leading));
-    }
-    std::string title = fmt::format(fmt::runtime(words_.insert), name);
-    if (step.coming.size() > 1) {
-      title += ", " + fmt::format(fmt::runtime(words_.with_others), step.coming.size() - 1);
-    }
-    return title;
   }
 
   [[nodiscard]] const char* DescribeWay(const WorkStep& step) const {
@@ -207,7 +180,7 @@ class PageMaker {
               &facts);
     }
     if (step.mods > 0) {
-      AddFact(words_.time,
+      AddFact(words_.step_time,
               fmt::format(fmt::runtime(words_.seconds), simulation::kModSeconds * step.mods),
               &facts);
     }
@@ -258,8 +231,9 @@ class PageMaker {
         words_.elements, rows);
   }
 
-  [[nodiscard]] std::string MakeView(const WorkStep& step) const {
-    const StepPicture picture = DrawStep(model_, step);
+  [[nodiscard]] std::string MakeView(const WorkStep& step) {
+    const StepPicture picture = DrawStep(model_, step, last_to_eye_);
+    last_to_eye_ = picture.to_eye;
     if (picture.png.empty()) {
       return {};
     }
@@ -271,13 +245,14 @@ class PageMaker {
         picture.width, picture.height, picture.svg);
   }
 
-  [[nodiscard]] std::string MakeStep(std::size_t i) const {
+  [[nodiscard]] std::string MakeStep(std::size_t i) {
     const WorkStep& step = plan_.steps[i];
     return fmt::format(
         "<section class=\"step\" id=\"step-{}\">{}<div><h3><span class=\"number\">{}</span> {}"
         "</h3>{}{}{}</div></section>\n",
-        i + 1, MakeView(step), fmt::format(fmt::runtime(words_.step), i + 1), MakeTitle(step),
-        MakeFacts(step), MakeWarnings(step), MakeMotions(step));
+        i + 1, MakeView(step), fmt::format(fmt::runtime(words_.step), i + 1),
+        Escape(DescribeStep(model_, step, options_.language)), MakeFacts(step), MakeWarnings(step),
+        MakeMotions(step));
   }
 
   [[nodiscard]] std::string MakeLeftOut() const {
@@ -295,6 +270,7 @@ class PageMaker {
   const WorkPlan& plan_;
   const InstructionOptions& options_;
   const InstructionWords& words_;
+  Vec3 last_to_eye_{Vec3::Zero()};
 };
 
 }  // namespace

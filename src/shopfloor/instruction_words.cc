@@ -1,5 +1,7 @@
 #include "shopfloor/instruction_words.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/units.h"
@@ -13,7 +15,8 @@ constexpr InstructionWords kEnglish{
     .title = "{}: work instructions",
     .parts = "parts",
     .steps = "steps",
-    .tools = "tools",
+    .work = "Work",
+    .tools = "Tools",
     .time = "time of the hands, about",
     .turns = "turns of the product",
     .left_out = "parts without a way in",
@@ -58,6 +61,7 @@ constexpr InstructionWords kEnglish{
     .before_meets = "before {}: afterwards it would meet {}",
     .before_mate = "before {}: afterwards {} leaves it no way in",
     .before_other = "before {}: no way in was found afterwards",
+    .step_time = "Time",
     .seconds = "{:.1f} s",
     .time_note =
         "Times by MODAPTS, 0.129 s a MOD, for a trained hand without allowances: an estimate "
@@ -73,6 +77,7 @@ constexpr InstructionWords kGerman{
     .title = "{}: Montageanweisung",
     .parts = "Teile",
     .steps = "Schritte",
+    .work = "Arbeit",
     .tools = "Werkzeuge",
     .time = "Handzeit, etwa",
     .turns = "Wendungen des Produkts",
@@ -118,6 +123,7 @@ constexpr InstructionWords kGerman{
     .before_meets = "vor {}: danach würde es an {} stoßen",
     .before_mate = "vor {}: danach lässt {} keinen Weg frei",
     .before_other = "vor {}: danach wurde kein Weg gefunden",
+    .step_time = "Zeit",
     .seconds = "{:.1f} s",
     .time_note =
         "Zeiten nach MODAPTS, 0,129 s je MOD, für geübte Hände ohne Zuschläge: geschätzt aus "
@@ -205,6 +211,43 @@ const char* ToString(Language language) {
 
 const InstructionWords& WordsOf(Language language) {
   return language == Language::kGerman ? kGerman : kEnglish;
+}
+
+const std::string& ShortNameOf(const simulation::Model& model, product::OccurrenceId id) {
+  const product::Occurrence& occurrence = model.product->occurrences[id.index()];
+  return occurrence.name.empty() ? occurrence.path : occurrence.name;
+}
+
+std::string ShortNamesOf(const simulation::Model& model,
+                         const std::vector<product::OccurrenceId>& parts) {
+  constexpr std::size_t kNamed = 4;  // As many as fit into a line: a choice.
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kNamed, parts.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + ShortNameOf(model, parts[i]);
+  }
+  return parts.size() > kNamed ? names + fmt::format(" (+{})", parts.size() - kNamed) : names;
+}
+
+std::string DescribeStep(const simulation::Model& model, const WorkStep& step, Language language) {
+  const InstructionWords& words = WordsOf(language);
+  const std::string& name = ShortNameOf(model, step.leading.front());
+  switch (step.kind) {
+    case WorkStep::Kind::kBase:
+      return fmt::format(fmt::runtime(words.first_part), name);
+    case WorkStep::Kind::kLayAside:
+      return fmt::format(fmt::runtime(words.lay_aside), name);
+    case WorkStep::Kind::kInsert:
+      break;
+  }
+  if (step.leading.size() > 1) {
+    return fmt::format(fmt::runtime(words.insert_many), step.leading.size(),
+                       ShortNamesOf(model, step.leading));
+  }
+  std::string title = fmt::format(fmt::runtime(words.insert), name);
+  if (step.coming.size() > 1) {
+    title += ", " + fmt::format(fmt::runtime(words.with_others), step.coming.size() - 1);
+  }
+  return title;
 }
 
 std::string DescribeMotion(const simulation::HandMotion& motion, Language language) {

@@ -16,6 +16,7 @@ struct InstructionWords {
   const char* title;  ///< {product}
   const char* parts;
   const char* steps;
+  const char* work;  ///< Heading of the steps.
   const char* tools;
   const char* time;
   const char* turns;
@@ -61,7 +62,8 @@ struct InstructionWords {
   const char* before_meets;  ///< {part} {other}
   const char* before_mate;   ///< {part} {other}
   const char* before_other;  ///< {part}
-  const char* seconds;       ///< {seconds}
+  const char* step_time;
+  const char* seconds;  ///< {seconds}
   const char* time_note;
   const char* elements;
   const char* left_out_note;
@@ -72,6 +74,18 @@ struct InstructionWords {
 };
 
 [[nodiscard]] const InstructionWords& WordsOf(Language language);
+
+/** The name of a part for people; its path where it has none. */
+[[nodiscard]] const std::string& ShortNameOf(const simulation::Model& model,
+                                             product::OccurrenceId id);
+
+/** The names of a few parts, and how many more there are. */
+[[nodiscard]] std::string ShortNamesOf(const simulation::Model& model,
+                                       const std::vector<product::OccurrenceId>& parts);
+
+/** What is done at a step: "Insert port ring 2". */
+[[nodiscard]] std::string DescribeStep(const simulation::Model& model, const WorkStep& step,
+                                       Language language);
 
 /** What a motion of the hand is for, with its amount: "bring the part 0.42 m". */
 [[nodiscard]] std::string DescribeMotion(const simulation::HandMotion& motion, Language language);

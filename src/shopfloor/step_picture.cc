@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "evidence/picture.h"
 
 namespace hvas::shopfloor {
@@ -117,42 +118,76 @@ std::vector<std::uint32_t> ListFaces(const product::Part& part) {
   return faces;
 }
 
-/** The view from above that shows most of what comes and of where it goes. */
-Vec3 ChooseView(const Model& model, const WorkStep& step, const StepScene& scene,
-                const spatial::Box& box) {
-  std::vector<PictureBody> coming_marked = scene.All();
-  for (std::size_t i = scene.there.size(); i < coming_marked.size(); ++i) {
-    coming_marked[i].marked_faces = ListFaces(*coming_marked[i].part);
+/** What is in the picture: all that is there, or where the part is small against it, the part and
+ its place with what is around them. */
+spatial::Box ChooseFrame(const Model& model, const WorkStep& step, const StepScene& scene) {
+  const spatial::Box all = BoxOf(scene.All());
+  spatial::Box focus = BoxOf(scene.coming);
+  const Pose X_UW(TurnUp(step.up_W), Vec3::Zero());
+  for (const OccurrenceId id : step.coming) {
+    focus.Add(spatial::Transform(X_UW * model.bodies[id.index()].X_WB_goal,
+                                 model.product->part_of(id).box_B));
   }
-  std::vector<PictureBody> place_marked = scene.All();
-  const auto places = FindPlaces(model, step);
-  for (std::size_t i = 0; i < step.there.size(); ++i) {
-    if (const auto found = places.find(step.there[i]); found != places.end()) {
-      place_marked[i].marked_faces = found->second;
-    }
-  }
-  const auto rate = [&](const Vec3& to_eye) {
-    const Projection projection(box, kTrialWidth, kTrialHeight, to_eye);
-    // Square roots, as a little of both tells more than much of one.
-    return std::sqrt(evidence::RateMarks(coming_marked, projection)) +
-           std::sqrt(evidence::RateMarks(place_marked, projection));
-  };
-  Vec3 best_view = evidence::UsualView();
-  double best = rate(best_view);
-  constexpr int kTurns = 8;         // Steps of 45 degrees: a choice.
-  constexpr double kBetter = 1.15;  // Another view has to be worth the reader's turn: a choice.
-  for (const double height : {0.45, 1.4, -0.35}) {
-    for (int turn = 0; turn < kTurns; ++turn) {
-      const double angle = 2 * std::numbers::pi * (turn + 0.4) / kTurns;
-      const Vec3 to_eye(std::cos(angle), std::sin(angle), height);
-      const double own = rate(to_eye);
-      if (own > kBetter * best) {
-        best = own;
-        best_view = to_eye;
+  // Shares of the picture: choices, tried on the gear pump and a follower arm.
+  constexpr double kLeastShare = 0.65;
+  const double wanted = kLeastShare * all.size().norm();
+  const double grow = 0.5 * std::max(0.0, wanted - focus.size().norm()) / std::sqrt(3.0);
+  spatial::Box frame;
+  frame.Add(Vec3((focus.low - Vec3::Constant(grow)).cwiseMax(all.low)));
+  frame.Add(Vec3((focus.high + Vec3::Constant(grow)).cwiseMin(all.high)));
+  return frame;
+}
+
+/** Says of views how much they show of what comes and of where it goes. */
+class ViewRating {
+ public:
+  ViewRating(const Model& model, const WorkStep& step, const StepScene& scene,
+             const spatial::Box& frame)
+      : frame_(frame), marked_(scene.All()) {
+    const auto places = FindPlaces(model, step);
+    for (std::size_t i = 0; i < marked_.size(); ++i) {
+      const bool is_there = i < scene.there.size();
+      marked_[i].mark_group = is_there ? kPlace : kPart;
+      if (!is_there) {
+        marked_[i].marked_faces = ListFaces(*marked_[i].part);
+      } else if (const auto found = places.find(step.there[i]); found != places.end()) {
+        marked_[i].marked_faces = found->second;
       }
     }
   }
-  return best_view;
+
+  [[nodiscard]] double Rate(const Vec3& to_eye) const {
+    const auto rates =
+        evidence::RateMarks(marked_, Projection(frame_, kTrialWidth, kTrialHeight, to_eye));
+    // Square roots, as a little of both tells more than much of one.
+    return std::sqrt(rates[kPart]) + std::sqrt(rates[kPlace]);
+  }
+
+ private:
+  static constexpr std::size_t kPart = 0;
+  static constexpr std::size_t kPlace = 1;
+
+  spatial::Box frame_;
+  std::vector<PictureBody> marked_;
+};
+
+/** The view from above that shows most; the last one, or the usual one, where it is nearly as good.
+ */
+Vec3 ChooseView(const ViewRating& rating, const Vec3& last_to_eye) {
+  constexpr int kTurns = 8;        // Steps of 45 degrees: a choice.
+  constexpr double kBetter = 1.3;  // Another view has to be worth the reader's turn: a choice.
+  std::vector<Vec3> views{last_to_eye.isZero() ? evidence::UsualView() : last_to_eye};
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double angle = 2 * std::numbers::pi * (turn + 0.4) / kTurns;
+    const double height = turn % 2 == 0 ? 0.5 : 1.2;
+    views.emplace_back(std::cos(angle), std::sin(angle), height);
+  }
+  std::vector<double> rates(views.size());
+  ForEachIndex(views.size(), 0, [&](std::size_t i) { rates[i] = rating.Rate(views[i]); });
+  const auto best = std::max_element(rates.begin(), rates.end()) - rates.begin();
+  return rates[static_cast<std::size_t>(best)] > kBetter * rates.front()
+             ? views[static_cast<std::size_t>(best)]
+             : views.front();
 }
 
 /** An arrow from one pixel to another one, or nothing where they are one. */
@@ -209,19 +244,19 @@ double CalcApart(const Model& model, const WorkStep& step) {
   return kEngaged * step.engaged + kBeyond * size;
 }
 
-StepPicture DrawStep(const Model& model, const WorkStep& step) {
+StepPicture DrawStep(const Model& model, const WorkStep& step, const Vec3& last_to_eye) {
   const StepScene scene = MakeScene(model, step);
   const std::vector<PictureBody> all = scene.All();
   if (all.empty()) {
     return {};
   }
-  // The place is in the picture, too, where the part is drawn far before it.
-  const spatial::Box box = BoxOf(all);
-  const Vec3 view =
-      step.there.empty() ? evidence::UsualView() : ChooseView(model, step, scene, box);
-  const Projection projection(box, kWidth, kHeight, view);
+  const spatial::Box frame = ChooseFrame(model, step, scene);
+  const Vec3 view = step.there.empty()
+                        ? evidence::UsualView()
+                        : ChooseView(ViewRating(model, step, scene, frame), last_to_eye);
+  const Projection projection(frame, kWidth, kHeight, view);
   return {evidence::MakePicture(all, projection), MakeArrows(model, step, projection), kWidth,
-          kHeight};
+          kHeight, view};
 }
 
 }  // namespace hvas::shopfloor

@@ -1,11 +1,11 @@
-// Imports go downward only, protocol <- model <- view3d <- app, and never in a circle. Types count as well.
+// Imports go downward only, protocol <- model <- view3d <- app and instructions, and never in a circle. Types count as well.
 
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { dirname, join, relative, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const root = fileURLToPath(new URL("../src", import.meta.url));
-const LAYERS = ["protocol", "model", "view3d", "app"];
+const LAYERS = ["protocol", "model", "view3d", "app", "instructions"];
 /** Packages that only these layers may know. */
 const PACKAGES = {
   preact: ["app"],
@@ -13,7 +13,7 @@ const PACKAGES = {
   qr: ["app"],
   uplot: ["app"],
   "uplot/dist/uPlot.min.css": ["app"],
-  three: ["view3d"],
+  three: ["view3d", "instructions"],
   "camera-controls": ["view3d"],
   "three-mesh-bvh": ["view3d"],
   "@preact/signals": ["model", "view3d", "app"],

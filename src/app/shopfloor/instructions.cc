@@ -18,7 +18,9 @@
 #include "base/atomic_file.h"
 #include "base/regular_file.h"
 #include "shopfloor/instruction_page.h"
+#include "shopfloor/viewer_element.h"
 #include "shopfloor/work_animation.h"
+#include "studio/assets.h"
 
 namespace hvas::app {
 namespace {
@@ -62,6 +64,15 @@ Result<std::string> MakePage(const InstructionsCommand& options, const simulatio
       return Unexpected(head.error());
     }
     page.head = std::move(*head);
+  }
+  const studio::Asset* viewer = studio::FindAsset("/instructions/viewer.js");
+  if (viewer != nullptr && options.output.extension() == ".html") {
+    const auto animation = shopfloor::MakeWorkAnimation(model, plan);
+    if (!animation) {
+      return Unexpected(animation.error());
+    }
+    page.viewer =
+        shopfloor::MakeViewerElement(model, plan, *animation, viewer->plain, options.language);
   }
   if (IsShown(options)) {
     page.progress = [](double fraction) { ShowProgress("pictures", fraction); };

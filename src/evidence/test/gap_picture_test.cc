@@ -26,7 +26,7 @@ double RateBoxes(const product::Part& part, bool is_hidden) {
   bodies[is_hidden ? 0 : 1].marked_faces = all;
   spatial::Box box_W = part.box_B;
   box_W.Add(spatial::Transform(X_front, part.box_B));
-  return RateMarks(bodies, Projection(box_W, 120, 90, Vec3(0, -1, 0)));
+  return RateMarks(bodies, Projection(box_W, 120, 90, Vec3(0, -1, 0))).front();
 }
 
 TEST(PictureTest, MarksThatAreHiddenCountForNothing) {
