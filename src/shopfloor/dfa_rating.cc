@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "product/fastener_name.h"
+#include "shopfloor/instruction_words.h"
 #include "shopfloor/order_arrow.h"
 #include "simulation/hand_time.h"
 
@@ -188,7 +189,7 @@ void RateInsertion(const Model& model, const Coming& coming, RatedParts* rated) 
   }
   if (coming.press > 0) {
     rated->insertion = fmt::format("{}1", 3 + access);
-    rated->inserted_as = fmt::format("pressed in with {:.3g} N", coming.press) + access_text;
+    rated->inserted_as = "pressed in with " + FormatForce(coming.press) + access_text;
     return;
   }
   rated->is_held = coming.is_held;

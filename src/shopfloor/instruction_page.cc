@@ -66,6 +66,10 @@ class PageMaker {
     }
     body += MakeLeftOut();
     body += fmt::format("<p class=\"soft\">{}</p>\n", words_.time_note);
+    if (!options_.record.empty()) {
+      body += fmt::format("<p class=\"soft\">{}</p>\n",
+                          fmt::format(fmt::runtime(words_.recorded_note), Escape(options_.record)));
+    }
     return pages::MakeHtmlPage(title, body, kStyle, ToString(options_.language));
   }
 
@@ -83,7 +87,7 @@ class PageMaker {
     int turns = 0;
     for (const WorkStep& step : plan_.steps) {
       if (!step.tool.empty()) {
-        tools.insert(step.tool);
+        tools.insert(TranslateTool(step.tool, options_.language));
       }
       turns += step.is_turned ? 1 : 0;
     }
@@ -100,6 +104,13 @@ class PageMaker {
         MakeTile(words_.steps, std::to_string(plan_.steps.size())) +
         MakeTile(words_.turns, std::to_string(turns)) +
         MakeTile(words_.time, fmt::format("{:.0f} s", simulation::kModSeconds * plan_.mods));
+    if (!options_.record.empty()) {
+      double recorded = 0;
+      for (const auto& [id, seconds] : options_.recorded_s) {
+        recorded += seconds;
+      }
+      tiles += MakeTile(words_.recorded_time, fmt::format("{:.0f} s", recorded));
+    }
     if (!plan_.left_out.empty()) {
       tiles += MakeTile(words_.left_out, std::to_string(plan_.left_out.size()));
     }
@@ -139,6 +150,16 @@ class PageMaker {
     *facts += fmt::format("<dt>{}</dt><dd>{}</dd>", name, value);
   }
 
+  /** How long the parts of a step were in hands in the record; 0 where there is none [s]. */
+  [[nodiscard]] double SumRecorded(const WorkStep& step) const {
+    double sum = 0;
+    for (const OccurrenceId id : step.leading) {
+      const auto found = options_.recorded_s.find(id);
+      sum += found == options_.recorded_s.end() ? 0 : found->second;
+    }
+    return sum;
+  }
+
   [[nodiscard]] std::string MakeFacts(const WorkStep& step) const {
     std::string facts;
     if (step.kind == WorkStep::Kind::kInsert) {
@@ -156,12 +177,14 @@ class PageMaker {
     constexpr double kMostByHand = 100;  // Order search has the same [N] (order_search.cc).
     constexpr double kLeastTold = 5;     // Hands do not mind less [N]: a choice.
     if (step.press > kMostByHand) {
-      AddFact(words_.force, fmt::format(fmt::runtime(words_.press), step.press), &facts);
+      AddFact(words_.force, fmt::format(fmt::runtime(words_.press), FormatForce(step.press)),
+              &facts);
     } else if (step.force > kLeastTold) {
-      AddFact(words_.force, fmt::format(fmt::runtime(words_.by_hand), step.force), &facts);
+      AddFact(words_.force, fmt::format(fmt::runtime(words_.by_hand), FormatForce(step.force)),
+              &facts);
     }
     if (!step.tool.empty()) {
-      AddFact(words_.tool, Escape(step.tool), &facts);
+      AddFact(words_.tool, Escape(TranslateTool(step.tool, options_.language)), &facts);
     }
     for (const WorkThread& thread : step.threads) {
       std::string text = thread.torque > 0 ? fmt::format(fmt::runtime(words_.tighten), thread.size,
@@ -180,20 +203,27 @@ class PageMaker {
               &facts);
     }
     if (step.mods > 0) {
-      AddFact(words_.step_time,
-              fmt::format(fmt::runtime(words_.seconds), simulation::kModSeconds * step.mods),
-              &facts);
+      const double recorded = SumRecorded(step);
+      AddFact(
+          words_.step_time,
+          fmt::format(fmt::runtime(words_.seconds), simulation::kModSeconds * step.mods) +
+              (recorded > 0 ? " (MODAPTS); " + fmt::format(fmt::runtime(words_.recorded), recorded)
+                            : ""),
+          &facts);
     }
     return facts.empty() ? "" : "<dl class=\"facts\">" + facts + "</dl>";
   }
 
   [[nodiscard]] std::string DescribeArrow(const OrderArrow& arrow) const {
     const std::string then = NameOf(arrow.then_part);
+    const bool is_own = arrow.other == arrow.then_part;
     switch (arrow.reason) {
       case ArrowReason::kMeets:
-        return fmt::format(fmt::runtime(words_.before_meets), then, NameOf(arrow.other));
+        return is_own ? fmt::format(fmt::runtime(words_.before_own_meets), then)
+                      : fmt::format(fmt::runtime(words_.before_meets), then, NameOf(arrow.other));
       case ArrowReason::kMate:
-        return fmt::format(fmt::runtime(words_.before_mate), then, NameOf(arrow.other));
+        return is_own ? fmt::format(fmt::runtime(words_.before_own_mate), then)
+                      : fmt::format(fmt::runtime(words_.before_mate), then, NameOf(arrow.other));
       default:
         return fmt::format(fmt::runtime(words_.before_other), then);
     }
@@ -204,13 +234,19 @@ class PageMaker {
     if (step.is_turned) {
       html += fmt::format("<p class=\"warning\">{}</p>", words_.turn_product);
     }
+    // Parts of one name say the same of others.
+    std::vector<std::string> told;
+    for (const OrderArrow& arrow : step.before) {
+      const std::string text = DescribeArrow(arrow);
+      if (std::find(told.begin(), told.end(), text) == told.end()) {
+        told.push_back(text);
+      }
+    }
     constexpr std::size_t kTold = 2;  // More are for the plan: a choice.
-    for (std::size_t i = 0; i < std::min(kTold, step.before.size()); ++i) {
-      html += fmt::format("<p class=\"warning\"><b>{}:</b> {}{}</p>", words_.order,
-                          DescribeArrow(step.before[i]),
-                          i + 1 == kTold && step.before.size() > kTold
-                              ? fmt::format(" (+{})", step.before.size() - kTold)
-                              : "");
+    for (std::size_t i = 0; i < std::min(kTold, told.size()); ++i) {
+      html += fmt::format(
+          "<p class=\"warning\"><b>{}:</b> {}{}</p>", words_.order, told[i],
+          i + 1 == kTold && told.size() > kTold ? fmt::format(" (+{})", told.size() - kTold) : "");
     }
     return html;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <stop_token>
 #include <string>
 
@@ -15,6 +16,8 @@ struct InstructionOptions {
   std::string head;  ///< HTML of the company's head, above the title; empty: none.
   /** Script of a viewer and its data, as a whole element of HTML; empty: no third dimension. */
   std::string viewer;
+  std::string record;  ///< Name of a record whose times stand beside the plan's; empty: none.
+  std::map<product::OccurrenceId, double> recorded_s;  ///< How long each part was in a hand there.
   std::function<void(double fraction)> progress;  ///< Called by the calling thread; may be null.
   std::stop_token stop;
 };

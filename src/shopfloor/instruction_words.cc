@@ -1,6 +1,8 @@
 #include "shopfloor/instruction_words.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -31,7 +33,7 @@ constexpr InstructionWords kEnglish{
     .lay_aside = "Lay the finished subassembly with {} aside",
     .insert = "Insert {}",
     .insert_many = "Insert {} pieces: {}",
-    .with_others = "with {} more parts of its subassembly",
+    .with_others = "with its subassembly (+{})",
     .turn_product = "First turn the product, as the picture shows.",
     .way = "Way",
     .from_above = "from above, along the arrow",
@@ -46,8 +48,8 @@ constexpr InstructionWords kEnglish{
     .interference = "interference",
     .proposed = " (proposed)",
     .force = "Force",
-    .press = "{:.3g} N: use a press or a mallet",
-    .by_hand = "{:.3g} N, by hand",
+    .press = "{}: use a press or a mallet",
+    .by_hand = "{}, by hand",
     .tool = "Tool",
     .torque = "Tighten",
     .tighten = "{} to {:.3g} N m (preload {:.3g} kN)",
@@ -59,10 +61,17 @@ constexpr InstructionWords kEnglish{
     .moved_aside = "{}, and back afterwards",
     .order = "Order matters",
     .before_meets = "before {}: afterwards it would meet {}",
+    .before_own_meets = "before {}, which it would meet afterwards",
     .before_mate = "before {}: afterwards {} leaves it no way in",
+    .before_own_mate = "before {}, which leaves it no way in afterwards",
     .before_other = "before {}: no way in was found afterwards",
     .step_time = "Time",
     .seconds = "{:.1f} s",
+    .recorded = "{:.1f} s in the record",
+    .recorded_time = "time in hands, in the record",
+    .recorded_note =
+        "Beside them stand the times that the parts were in hands in the record {}: those "
+        "of whoever worked there, a simulated person or a participant.",
     .time_note =
         "Times by MODAPTS, 0.129 s a MOD, for a trained hand without allowances: an estimate "
         "from distances, weights, sizes and fits, not measured.",
@@ -93,7 +102,7 @@ constexpr InstructionWords kGerman{
     .lay_aside = "Fertige Baugruppe mit {} ablegen",
     .insert = "{} einsetzen",
     .insert_many = "{} Stück einsetzen: {}",
-    .with_others = "mit {} weiteren Teilen seiner Baugruppe",
+    .with_others = "mit seiner Baugruppe (+{})",
     .turn_product = "Zuerst das Produkt wenden, wie im Bild.",
     .way = "Weg",
     .from_above = "von oben, entlang des Pfeils",
@@ -108,8 +117,8 @@ constexpr InstructionWords kGerman{
     .interference = "Presspassung",
     .proposed = " (vorgeschlagen)",
     .force = "Kraft",
-    .press = "{:.3g} N: Presse oder Schonhammer benutzen",
-    .by_hand = "{:.3g} N, von Hand",
+    .press = "{}: Presse oder Schonhammer benutzen",
+    .by_hand = "{}, von Hand",
     .tool = "Werkzeug",
     .torque = "Anziehen",
     .tighten = "{} mit {:.3g} N m (Vorspannkraft {:.3g} kN)",
@@ -121,10 +130,17 @@ constexpr InstructionWords kGerman{
     .moved_aside = "{} beiseite bewegen, danach zurück",
     .order = "Reihenfolge",
     .before_meets = "vor {}: danach würde es an {} stoßen",
+    .before_own_meets = "vor {}: danach würde es daran stoßen",
     .before_mate = "vor {}: danach lässt {} keinen Weg frei",
+    .before_own_mate = "vor {}: danach bleibt kein Weg frei",
     .before_other = "vor {}: danach wurde kein Weg gefunden",
     .step_time = "Zeit",
     .seconds = "{:.1f} s",
+    .recorded = "{:.1f} s in der Aufzeichnung",
+    .recorded_time = "Zeit in Händen, aufgezeichnet",
+    .recorded_note =
+        "Daneben stehen die Zeiten, die die Teile in der Aufzeichnung {} in Händen waren: "
+        "die der simulierten Person oder des Menschen, der dort gearbeitet hat.",
     .time_note =
         "Zeiten nach MODAPTS, 0,129 s je MOD, für geübte Hände ohne Zuschläge: geschätzt aus "
         "Entfernungen, Gewichten, Größen und Passungen, nicht gemessen.",
@@ -134,6 +150,18 @@ constexpr InstructionWords kGerman{
     .view3d = "Räumlich",
     .previous = "Schritt zurück",
     .next = "Nächster Schritt"};
+
+/** A word of tools' names in another language. */
+struct ToolWord {
+  std::string_view english;
+  std::string_view german;
+};
+
+constexpr std::array kToolWords{ToolWord{"hexagon key", "Innensechskantschlüssel"},
+                                ToolWord{"spanner", "Maulschlüssel"},
+                                ToolWord{"cross screwdriver", "Kreuzschlitz-Schraubendreher"},
+                                ToolWord{"slot screwdriver", "Schlitz-Schraubendreher"},
+                                ToolWord{"screwdriver", "Schraubendreher"}};
 
 std::string DescribeInEnglish(const simulation::HandMotion& motion) {
   switch (motion.purpose) {
@@ -162,7 +190,7 @@ std::string DescribeInEnglish(const simulation::HandMotion& motion) {
     case MotionPurpose::kCrank:
       return fmt::format("turn it in, {:.0f} turns", motion.amount);
     case MotionPurpose::kPress:
-      return fmt::format("press it in, {:.3g} N", motion.amount);
+      return "press it in, " + FormatForce(motion.amount);
     case MotionPurpose::kHold:
       return "hold against it with the other hand";
   }
@@ -196,7 +224,7 @@ std::string DescribeInGerman(const simulation::HandMotion& motion) {
     case MotionPurpose::kCrank:
       return fmt::format("eindrehen, {:.0f} Umdrehungen", motion.amount);
     case MotionPurpose::kPress:
-      return fmt::format("einpressen, {:.3g} N", motion.amount);
+      return "einpressen, " + FormatForce(motion.amount);
     case MotionPurpose::kHold:
       return "mit der anderen Hand gegenhalten";
   }
@@ -204,6 +232,22 @@ std::string DescribeInGerman(const simulation::HandMotion& motion) {
 }
 
 }  // namespace
+
+std::string FormatForce(double force) {
+  constexpr double kKilo = 1000;
+  return force < kKilo ? fmt::format("{:.3g} N", force) : fmt::format("{:.3g} kN", force / kKilo);
+}
+
+std::string TranslateTool(const std::string& tool, Language language) {
+  if (language == Language::kGerman) {
+    for (const ToolWord& word : kToolWords) {
+      if (tool.starts_with(word.english)) {
+        return std::string(word.german) + tool.substr(word.english.size());
+      }
+    }
+  }
+  return tool;
+}
 
 const char* ToString(Language language) {
   return language == Language::kGerman ? "de" : "en";

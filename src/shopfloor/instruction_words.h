@@ -59,11 +59,16 @@ struct InstructionWords {
   const char* aside;
   const char* moved_aside;  ///< {part}
   const char* order;
-  const char* before_meets;  ///< {part} {other}
-  const char* before_mate;   ///< {part} {other}
-  const char* before_other;  ///< {part}
+  const char* before_meets;      ///< {part} {other}
+  const char* before_own_meets;  ///< {part}
+  const char* before_mate;       ///< {part} {other}
+  const char* before_own_mate;   ///< {part}
+  const char* before_other;      ///< {part}
   const char* step_time;
-  const char* seconds;  ///< {seconds}
+  const char* seconds;   ///< {seconds}
+  const char* recorded;  ///< {seconds}
+  const char* recorded_time;
+  const char* recorded_note;  ///< {file}
   const char* time_note;
   const char* elements;
   const char* left_out_note;
@@ -72,6 +77,12 @@ struct InstructionWords {
   const char* previous;
   const char* next;
 };
+
+/** "295 N", "1.16 kN". @param force  [N] */
+[[nodiscard]] std::string FormatForce(double force);
+
+/** The name of a tool (simulation::FreeMove::tool) in a language. */
+[[nodiscard]] std::string TranslateTool(const std::string& tool, Language language);
 
 [[nodiscard]] const InstructionWords& WordsOf(Language language);
 

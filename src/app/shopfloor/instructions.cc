@@ -1,5 +1,6 @@
 #include "app/shopfloor/instructions.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "app/recording/page_file.h"
 #include "base/atomic_file.h"
 #include "base/regular_file.h"
+#include "evidence/summary.h"
 #include "shopfloor/instruction_page.h"
 #include "shopfloor/viewer_element.h"
 #include "shopfloor/work_animation.h"
@@ -30,7 +32,8 @@ constexpr std::size_t kLargestHead = 10'000'000;  // Bytes of a head with pictur
 
 struct InstructionsCommand : PlanCommandOptions {
   shopfloor::Language language{shopfloor::Language::kEnglish};
-  std::filesystem::path head;  ///< HTML of the company's head; empty: none.
+  std::filesystem::path head;    ///< HTML of the company's head; empty: none.
+  std::filesystem::path record;  ///< Its times stand beside those of the plan; empty: none.
 };
 
 bool IsAnimation(const InstructionsCommand& options) {
@@ -53,6 +56,37 @@ Result<void> CheckOutput(const InstructionsCommand& options) {
   return CheckNewFile(options.output, options.is_replaced);
 }
 
+/** Reads how long each part was in a hand in a record of the product.
+ Errors: the reader's; kInvalid for a record of another product. */
+Result<std::map<product::OccurrenceId, double>> ReadTimes(const std::filesystem::path& file,
+                                                          const product::Product& product) {
+  auto reader = record::Reader::Open(file);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  const auto summary = evidence::Summarise(&*reader);
+  if (!summary) {
+    return Unexpected(summary.error());
+  }
+  bool is_same = summary->paths.size() >= product.occurrences.size();
+  for (std::size_t k = 0; is_same && k < product.occurrences.size(); ++k) {
+    is_same = summary->paths[k] == product.occurrences[k].path;
+  }
+  if (!is_same) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("the record is of a product with other parts than {}", product.source),
+                file.string(), "record it with hvas assemble FILE --record run.hvasrec");
+  }
+  std::map<product::OccurrenceId, double> times;
+  for (const evidence::Hold& hold : summary->holds) {
+    if (hold.occurrence < product.occurrences.size()) {
+      times[product::OccurrenceId(hold.occurrence)] +=
+          1e-9 * static_cast<double>(hold.end_ns - hold.start_ns);
+    }
+  }
+  return times;
+}
+
 Result<std::string> MakePage(const InstructionsCommand& options, const simulation::Model& model,
                              const shopfloor::WorkPlan& plan, const std::stop_token& stop) {
   shopfloor::InstructionOptions page;
@@ -64,6 +98,14 @@ Result<std::string> MakePage(const InstructionsCommand& options, const simulatio
       return Unexpected(head.error());
     }
     page.head = std::move(*head);
+  }
+  if (!options.record.empty()) {
+    auto times = ReadTimes(options.record, *model.product);
+    if (!times) {
+      return Unexpected(times.error());
+    }
+    page.record = options.record.filename().string();
+    page.recorded_s = std::move(*times);
   }
   const studio::Asset* viewer = studio::FindAsset("/instructions/viewer.js");
   if (viewer != nullptr && options.output.extension() == ".html") {
@@ -164,6 +206,8 @@ void AddInstructions(CLI::App* app, int* status) {
             "Language of the instructions: en (default) or de");
   command->add_option("--head", options->head,
                       "File with HTML that is put above the title: the company's head");
+  command->add_option("--record", options->record,
+                      "A record of the product: the times of its parts stand beside the plan's");
   command->add_option("--plan", options->order.plan,
                       "A plan that hvas plan has written with -o: its order is followed");
   AddBaseOption(command, &options->order.base);
@@ -178,7 +222,7 @@ void AddInstructions(CLI::App* app, int* status) {
       "  hvas instructions products/gear_pump.step -o pump.html\n"
       "  hvas instructions products/gear_pump.step -o pumpe.pdf --language de --head head.html\n"
       "  hvas instructions products/gear_pump.step -o pump.glb\n"
-      "  hvas instructions pump.step --plan plan.json -o pump.html");
+      "  hvas instructions pump.step --plan plan.json -o pump.html --record run.hvasrec");
   command->callback([options, status] { *status = RunInstructions(*options); });
 }
 
