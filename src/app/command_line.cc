@@ -144,6 +144,7 @@ void SetGroups(CLI::App* app) {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
       {"Inspect and convert CAD files", {"inspect", "mate", "export", "path", "tool"}},
       {"Assemble", {"studio", "plan", "assemble", "disassemble", "replay", "report"}},
+      {"Write instructions, rate the design", {"instructions", "dfa", "motions"}},
       {"Calculate fits", {"fit"}},
       {"Run studies with participants", {"study"}},
       {"This machine", {"devices", "doctor"}},

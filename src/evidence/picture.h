@@ -62,7 +62,7 @@ struct PictureBody {
 [[nodiscard]] std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
                                                    const Projection& projection);
 
-/** For each group of marks, the share of the marked faces in the projection that nothing hides,
+/** Rates each group of marks: the share of the marked faces in the projection that nothing hides,
  times the share of the picture that they fill. */
 [[nodiscard]] std::array<double, kMarkGroups> RateMarks(const std::vector<PictureBody>& bodies,
                                                         const Projection& projection);

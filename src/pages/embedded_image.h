@@ -5,7 +5,7 @@
 
 namespace hvas::pages {
 
-/** Bytes as text (RFC 4648, section 4). */
+/** Bytes as text, in base 64. */
 [[nodiscard]] std::string EncodeBase64(std::string_view bytes);
 
 /** Address of a PNG file that has the file in itself ("data:image/png;base64,..."), for pages that

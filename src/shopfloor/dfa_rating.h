@@ -27,7 +27,7 @@ struct NeedOfPart {
 
 /** Equal parts that come in the same way, with what their codes were chosen by. */
 struct RatedParts {
-  std::vector<product::OccurrenceId> parts;  ///< In the order of assembly.
+  std::vector<product::OccurrenceId> parts;  ///< They stand in the order of assembly.
   PartSymmetry symmetry;
   double size{0};           ///< Largest extent [m].
   double thickness{0};      ///< Smallest extent; half of it where the part is round and long [m].
@@ -48,7 +48,7 @@ struct DfaAdvice {
 
 /** A product by Boothroyd and Dewhurst. */
 struct DfaRating {
-  std::vector<RatedParts> groups;  ///< In the order of assembly.
+  std::vector<RatedParts> groups;  ///< They stand in the order of assembly.
   DfaSheet sheet;                  ///< Its rows are the groups.
   std::vector<DfaAdvice> advice;   ///< What saves most comes first.
 };

@@ -129,7 +129,7 @@ std::string DescribeInsertion(std::string_view code) {
                        kEase[second >= 6 ? second - 6 : std::min<std::size_t>(second, 3)]);
   }
   if (first < 6) {
-    constexpr std::size_t kScrew = 8;
+    constexpr std::size_t kScrew = 8;  // The chart has screws in its columns 8 and 9.
     const std::string_view how = second < kScrew ? "pressed or snapped in"
                                  : second == kScrew
                                      ? "screwed in, easy to align"

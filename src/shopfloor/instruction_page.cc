@@ -10,6 +10,8 @@
 #include "base/units.h"
 #include "pages/embedded_image.h"
 #include "pages/html_page.h"
+#include "shopfloor/most_sequence.h"
+#include "shopfloor/motion_code.h"
 #include "shopfloor/step_picture.h"
 
 namespace hvas::shopfloor {
@@ -85,7 +87,9 @@ class PageMaker {
   [[nodiscard]] std::string MakeTiles() const {
     std::set<std::string> tools;
     int turns = 0;
+    double most = 0;
     for (const WorkStep& step : plan_.steps) {
+      most += SumSeconds(ListMostSequences(step.motions));
       if (!step.tool.empty()) {
         tools.insert(TranslateTool(step.tool, options_.language));
       }
@@ -103,7 +107,9 @@ class PageMaker {
         MakeTile(words_.parts, std::to_string(parts)) +
         MakeTile(words_.steps, std::to_string(plan_.steps.size())) +
         MakeTile(words_.turns, std::to_string(turns)) +
-        MakeTile(words_.time, fmt::format("{:.0f} s", simulation::kModSeconds * plan_.mods));
+        MakeTile(fmt::format("{}, MODAPTS", words_.time),
+                 fmt::format("{:.0f} s", simulation::kModSeconds * plan_.mods)) +
+        MakeTile(fmt::format("{}, BasicMOST", words_.time), fmt::format("{:.0f} s", most));
     if (!options_.record.empty()) {
       double recorded = 0;
       for (const auto& [id, seconds] : options_.recorded_s) {
@@ -160,6 +166,10 @@ class PageMaker {
     return sum;
   }
 
+  [[nodiscard]] std::string FormatSeconds(double seconds) const {
+    return fmt::format(fmt::runtime(words_.seconds), seconds);
+  }
+
   [[nodiscard]] std::string MakeFacts(const WorkStep& step) const {
     std::string facts;
     if (step.kind == WorkStep::Kind::kInsert) {
@@ -204,12 +214,12 @@ class PageMaker {
     }
     if (step.mods > 0) {
       const double recorded = SumRecorded(step);
-      AddFact(
-          words_.step_time,
-          fmt::format(fmt::runtime(words_.seconds), simulation::kModSeconds * step.mods) +
-              (recorded > 0 ? " (MODAPTS); " + fmt::format(fmt::runtime(words_.recorded), recorded)
-                            : ""),
-          &facts);
+      AddFact(words_.step_time,
+              fmt::format("{} (MODAPTS), {} (BasicMOST)",
+                          FormatSeconds(simulation::kModSeconds * step.mods),
+                          FormatSeconds(SumSeconds(ListMostSequences(step.motions)))) +
+                  (recorded > 0 ? "; " + fmt::format(fmt::runtime(words_.recorded), recorded) : ""),
+              &facts);
     }
     return facts.empty() ? "" : "<dl class=\"facts\">" + facts + "</dl>";
   }
@@ -261,10 +271,18 @@ class PageMaker {
                           Escape(motion.code), Escape(DescribeMotion(motion, options_.language)),
                           motion.mods, simulation::kModSeconds * motion.mods);
     }
+    std::string sequences;
+    for (const MostSequence& sequence : ListMostSequences(step.motions)) {
+      sequences +=
+          fmt::format("<tr><td>{}</td><td class=\"l\">{}</td><td>{:.0f}</td><td>{:.3f}</td></tr>",
+                      sequence.code, Escape(DescribeSequence(sequence.purpose, options_.language)),
+                      sequence.seconds / kTmuSeconds, sequence.seconds);
+    }
     return fmt::format(
         "<details><summary>{}</summary><table><tr><th>MODAPTS</th><th></th><th>MOD</th>"
-        "<th>s</th></tr>{}</table></details>",
-        words_.elements, rows);
+        "<th>s</th></tr>{}</table><table><tr><th>BasicMOST</th><th></th><th>TMU</th><th>s</th>"
+        "</tr>{}</table></details>",
+        words_.elements, rows, sequences);
   }
 
   [[nodiscard]] std::string MakeView(const WorkStep& step) {

@@ -73,7 +73,9 @@ constexpr InstructionWords kEnglish{
         "Beside them stand the times that the parts were in hands in the record {}: those "
         "of whoever worked there, a simulated person or a participant.",
     .time_note =
-        "Times by MODAPTS, 0.129 s a MOD, for a trained hand without allowances: an estimate "
+        "Times by MODAPTS, 0.129 s a MOD, and by the general and the tool sequence of BasicMOST, "
+        "0.036 s "
+        "a TMU, for a trained hand without allowances: an estimate "
         "from distances, weights, sizes and fits, not measured.",
     .elements = "Motions",
     .left_out_note = "No way in was found for these parts. Insert them by your own judgement:",
@@ -142,7 +144,8 @@ constexpr InstructionWords kGerman{
         "Daneben stehen die Zeiten, die die Teile in der Aufzeichnung {} in Händen waren: "
         "die der simulierten Person oder des Menschen, der dort gearbeitet hat.",
     .time_note =
-        "Zeiten nach MODAPTS, 0,129 s je MOD, für geübte Hände ohne Zuschläge: geschätzt aus "
+        "Zeiten nach MODAPTS, 0,129 s je MOD, und nach BasicMOST, 0,036 s je TMU, für geübte Hände "
+        "ohne Zuschläge: geschätzt aus "
         "Entfernungen, Gewichten, Größen und Passungen, nicht gemessen.",
     .elements = "Bewegungen",
     .left_out_note = "Für diese Teile wurde kein Weg gefunden. Nach eigenem Ermessen einsetzen:",
@@ -234,7 +237,7 @@ std::string DescribeInGerman(const simulation::HandMotion& motion) {
 }  // namespace
 
 std::string FormatForce(double force) {
-  constexpr double kKilo = 1000;
+  constexpr double kKilo = 1000;  // From there on a force is told in kN [N].
   return force < kKilo ? fmt::format("{:.3g} N", force) : fmt::format("{:.3g} kN", force / kKilo);
 }
 
@@ -296,6 +299,20 @@ std::string DescribeStep(const simulation::Model& model, const WorkStep& step, L
 
 std::string DescribeMotion(const simulation::HandMotion& motion, Language language) {
   return language == Language::kGerman ? DescribeInGerman(motion) : DescribeInEnglish(motion);
+}
+
+std::string DescribeSequence(MotionPurpose purpose, Language language) {
+  const bool is_german = language == Language::kGerman;
+  switch (purpose) {
+    case MotionPurpose::kTurnProduct:
+      return is_german ? "Produkt wenden" : "turn the product over";
+    case MotionPurpose::kHold:
+      return is_german ? "gegenhalten" : "hold against it";
+    case MotionPurpose::kCrank:
+      return is_german ? "Werkzeug benutzen" : "use the tool";
+    default:
+      return is_german ? "Teil holen und einsetzen" : "get the part and put it into its place";
+  }
 }
 
 }  // namespace hvas::shopfloor

@@ -101,4 +101,7 @@ struct InstructionWords {
 /** What a motion of the hand is for, with its amount: "bring the part 0.42 m". */
 [[nodiscard]] std::string DescribeMotion(const simulation::HandMotion& motion, Language language);
 
+/** What a sequence of BasicMOST is for: "bring the part". */
+[[nodiscard]] std::string DescribeSequence(simulation::MotionPurpose purpose, Language language);
+
 }  // namespace hvas::shopfloor

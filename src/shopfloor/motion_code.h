@@ -18,7 +18,7 @@ inline constexpr double kTmuSeconds = 0.036;  ///< One TMU, 1e-5 h [s].
 /** Seconds of each code of a system of times. */
 struct TimeCard {
   std::string name;                       ///< "MODAPTS", or that of the user's file.
-  std::map<std::string, double> seconds;  ///< By code [s].
+  std::map<std::string, double> seconds;  ///< Seconds of one motion, by code.
 };
 
 /** The codes of MODAPTS. */
@@ -28,7 +28,7 @@ struct TimeCard {
 struct CodedMotion {
   std::string code;
   int count{1};
-  double seconds{0};  ///< For all of them.
+  double seconds{0};  ///< Time of all of them [s].
 };
 
 /** Reads a sequence, "M3 E2 G3 M3 E2 P5", "M4G1" or "5 C3 + A4": codes, each with an optional

@@ -29,7 +29,7 @@ constexpr int kTrialHeight = 72;
 
 constexpr product::Color kComing{0.96F, 0.62F, 0.2F};  // Orange: a choice.
 constexpr float kPale = 0.55F;                         // Share of light grey: a choice.
-constexpr float kLightGrey = 0.82F;
+constexpr float kLightGrey = 0.82F;  // What pale colours are mixed with: a choice.
 
 product::Color Pale(const product::Color& color) {
   const auto mix = [](float channel) { return kPale * kLightGrey + (1 - kPale) * channel; };
@@ -164,8 +164,7 @@ class ViewRating {
   }
 
  private:
-  static constexpr std::size_t kPart = 0;
-  static constexpr std::size_t kPlace = 1;
+  enum MarkGroup : std::size_t { kPart, kPlace };
 
   spatial::Box frame_;
   std::vector<PictureBody> marked_;

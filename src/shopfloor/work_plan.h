@@ -53,10 +53,10 @@ struct WorkStep {
   std::vector<WorkFit> fits;          ///< Fits of the first leading part.
   std::vector<WorkThread> threads;
   double press{0};                              ///< What the fits of one part need [N].
-  double force{0};                              ///< Of the hands for one part [N].
+  double force{0};                              ///< Force of the hands for one part [N].
   std::vector<product::OccurrenceId> holds;     ///< What has to be held after it.
   std::vector<OrderArrow> before;               ///< What it has to come before, and is not implied.
-  std::vector<simulation::HandMotion> motions;  ///< Of all its parts.
+  std::vector<simulation::HandMotion> motions;  ///< Motions for all its parts.
   int mods{0};                                  ///< Their sum [MOD].
 };
 
@@ -72,7 +72,7 @@ struct BillLine {
 /** The work by which a product is put together. */
 struct WorkPlan {
   std::vector<WorkStep> steps;
-  std::vector<BillLine> bill;                   ///< In the order in which they are needed.
+  std::vector<BillLine> bill;  ///< Lines in the order in which the parts are needed.
   std::vector<product::OccurrenceId> left_out;  ///< Parts that have no way in.
   int mods{0};                                  ///< [MOD]
 };

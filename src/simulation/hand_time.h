@@ -46,7 +46,7 @@ struct HandMotion {
   MotionPurpose purpose{MotionPurpose::kGoTo};
   std::string code;
   int mods{0};
-  double amount{0};  ///< In the unit that stands at the purpose; else 0.
+  double amount{0};  ///< Its unit stands at the purpose; else 0.
 };
 
 /** The sum of their MOD. */

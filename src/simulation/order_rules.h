@@ -41,8 +41,9 @@ struct FreeMove {
   std::vector<std::size_t> neighbours;           ///< Moves whose parts hold this one; sorted.
   bool is_held_by_base{false};                   ///< The base, or a fixture, holds it.
   double weight{0};                              ///< Weight of its parts [N].
-  std::vector<HandMotion> motions;  ///< Of the hand, in every order (EffortFinder::ListMotions).
-  int mods{0};                      ///< Their sum [MOD].
+  std::vector<HandMotion>
+      motions;  ///< Motions of the hand in every order (EffortFinder::ListMotions).
+  int mods{0};  ///< Their sum [MOD].
 };
 
 /** A side of the product that may be upwards: an axis of W, the positive and the negative one of x,

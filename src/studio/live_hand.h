@@ -25,7 +25,7 @@ struct HandPurpose {
   spatial::Pose X_WH;  ///< Initial pose of the hand.
   double rate_hz{1000};
   const LiveTrial* trial{nullptr};  ///< Trial of a study; may be null.
-  haptics::PaperGuidance guidance;  ///< Of hands that are not in a trial, which has its own.
+  haptics::PaperGuidance guidance;  ///< Guidance outside trials, which have their own.
 };
 
 /** Makes the tick options of a hand that a remote client moves: those of the simulated device, with

@@ -27,7 +27,7 @@ struct WorkbenchOptions {
   std::filesystem::path recordings_folder;  ///< Empty: recording is switched off.
   std::filesystem::path work_file;  ///< File that SavedWork is saved to after changes; empty: none.
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
-  haptics::PaperGuidance guidance;  ///< Of all hands outside the trials of a study.
+  haptics::PaperGuidance guidance;  ///< Guidance of all hands outside the trials of a study.
 };
 
 /** Connects the parts of the workbench, each of which has its own state and its own mutex, and

@@ -20,6 +20,7 @@
 #include "base/regular_file.h"
 #include "evidence/summary.h"
 #include "shopfloor/instruction_page.h"
+#include "shopfloor/most_sequence.h"
 #include "shopfloor/viewer_element.h"
 #include "shopfloor/work_animation.h"
 #include "studio/assets.h"
@@ -142,8 +143,10 @@ nlohmann::ordered_json MakeJson(const InstructionsCommand& options, const simula
                               {"hand_time_s", simulation::kModSeconds * plan.mods},
                               {"left_out", plan.left_out.size()}};
   for (const shopfloor::WorkStep& step : plan.steps) {
-    nlohmann::ordered_json one{{"parts", nlohmann::ordered_json::array()},
-                               {"hand_time_s", simulation::kModSeconds * step.mods}};
+    nlohmann::ordered_json one{
+        {"parts", nlohmann::ordered_json::array()},
+        {"hand_time_s", simulation::kModSeconds * step.mods},
+        {"most_s", shopfloor::SumSeconds(shopfloor::ListMostSequences(step.motions))}};
     for (const product::OccurrenceId id : step.leading) {
       one["parts"].push_back(PathOf(model, id));
     }
@@ -156,6 +159,10 @@ nlohmann::ordered_json MakeJson(const InstructionsCommand& options, const simula
           {{"code", motion.code},
            {"mod", motion.mods},
            {"for", shopfloor::DescribeMotion(motion, shopfloor::Language::kEnglish)}});
+    }
+    one["most"] = nlohmann::ordered_json::array();
+    for (const shopfloor::MostSequence& sequence : shopfloor::ListMostSequences(step.motions)) {
+      one["most"].push_back({{"code", sequence.code}, {"time_s", sequence.seconds}});
     }
     json["steps"].push_back(std::move(one));
   }

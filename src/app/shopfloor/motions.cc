@@ -9,6 +9,7 @@
 
 #include "app/assembly/run_report.h"
 #include "app/output/choice.h"
+#include "app/output/json_flag.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_table.h"
 #include "app/shopfloor/time_card_file.h"
@@ -95,7 +96,7 @@ void AddMotions(CLI::App* app, int* status) {
       Choices<MotionSystem>{{"modapts", MotionSystem::kModapts}, {"most", MotionSystem::kMost}},
       "System of the codes: modapts (default) or most (BasicMOST, by its indices)")
       ->excludes(card);
-  command->add_flag("--json", options->is_json, "Print JSON");
+  AddJsonFlag(command, &options->is_json, "motions");
   command->footer(
       "Examples:\n"
       "  hvas motions \"M3 E2 G3 M3 E2 P5\"                  pick a screw and insert it: 2.322 s\n"

@@ -58,7 +58,7 @@ PartSymmetry AlphaBeta(int alpha_deg, int beta_deg) {
   return {alpha_deg, beta_deg};
 }
 
-// The examples follow from the two definitions (Whitney, Mechanical Assemblies, 2004, Fig. 15-1).
+// The examples follow from the two definitions (Whitney, Fig. 15-1).
 TEST(PartSymmetryTest, APlainCylinderTakesEitherEndAtAnyTurn) {
   EXPECT_EQ(FindSymmetry(Prism(Polygon(96, 10e-3), 40e-3), Vec3::UnitZ()), AlphaBeta(180, 0));
 }

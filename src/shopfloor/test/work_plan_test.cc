@@ -7,6 +7,7 @@
 #include "assembly/prepare_model.h"
 #include "shopfloor/dfa_rating.h"
 #include "shopfloor/instruction_page.h"
+#include "shopfloor/most_sequence.h"
 #include "shopfloor/motion_code.h"
 #include "shopfloor/work_animation.h"
 #include "simulation/test/small_products.h"
@@ -70,6 +71,21 @@ TEST(WorkPlanTest, MotionsAddUpAndAreCodesOfModapts) {
   }
   EXPECT_EQ(all, plan.mods);
   EXPECT_GT(all, 0);
+}
+
+TEST(MostSequenceTest, FollowsTheMotions) {
+  using simulation::HandMotion;
+  using simulation::MotionPurpose;
+  const std::vector<HandMotion> screw{
+      {MotionPurpose::kGoTo, "M4", 4, 0.3},       {MotionPurpose::kGet, "E2 G3", 5, 0.01},
+      {MotionPurpose::kBring, "M4", 4, 0.3},      {MotionPurpose::kPut, "E2 P5", 7, 0},
+      {MotionPurpose::kToolOn, "M3 E2 P2", 7, 0}, {MotionPurpose::kCrank, "10 C3", 30, 10}};
+  const std::vector<MostSequence> sequences = ListMostSequences(screw);
+  ASSERT_EQ(sequences.size(), 2U);
+  EXPECT_EQ(sequences[0].code, "A1 B0 G3 A1 B0 P6 A0") << "pick a screw and insert it: 110 TMU";
+  EXPECT_NEAR(sequences[0].seconds, 3.96, 1e-12);
+  EXPECT_EQ(sequences[1].code, "A1 B0 G1 A1 B0 P3 F16 A1 B0 P1 A0") << "3.87 s of turns: F 16";
+  EXPECT_TRUE(ListMostSequences({}).empty());
 }
 
 TEST(InstructionPageTest, HasEveryStepInItsLanguageAndTheSameBytes) {
