@@ -170,8 +170,9 @@ Result<std::vector<SobolOfFactor>> CalcSobolOfFactors(const PreparedCell& cell, 
   for (std::size_t i = 0; i < count; ++i) {
     indices[i].factor = cell.fits.factors()[i].name;
   }
-  const auto set = [&](const statistics::SobolSample& sample,
-                       std::optional<statistics::SobolIndex> SobolOfFactor::*member) -> Result<void> {
+  const auto set =
+      [&](const statistics::SobolSample& sample,
+          std::optional<statistics::SobolIndex> SobolOfFactor::*member) -> Result<void> {
     if (count == 0 || !HasSpread(sample)) {
       return {};
     }

@@ -30,7 +30,7 @@ struct Factor {
 /** A fit of a product before its sizes are drawn. */
 struct FittedMate {
   product::MateId id;
-  std::string name;             ///< "m0 H7/p6 bushing/shaft", for people.
+  std::string name;  ///< "m0 H7/p6 bushing/shaft", for people.
   simulation::FitToDraw fit;
   std::optional<fits::SizeDistribution> hole, shaft;  ///< Deviations; none: as drawn or measured.
   std::size_t joint{0};         ///< Mates with one number join one pair of parts.
@@ -49,8 +49,8 @@ struct MadeFit {
  kZone, a run has the sizes of `hvas assemble --sizes any --seed SEED`. */
 class FitModel {
  public:
-  /** Errors: kInvalid where a capability does not suit a zone, or a parameter of a fit is out of its
-   range. A mate whose fit the standard does not define is a warning, and left out.
+  /** Errors: kInvalid where a capability does not suit a zone, or a parameter of a fit is out of
+   its range. A mate whose fit the standard does not define is a warning, and left out.
    @pre diagnostics != nullptr. */
   [[nodiscard]] static Result<FitModel> Make(const product::Product& product,
                                              const SizeVariant& sizes, Diagnostics* diagnostics);
@@ -67,8 +67,8 @@ class FitModel {
   [[nodiscard]] MadeFit CalcFit(std::size_t mate, std::span<const std::uint64_t> values) const;
 
   /** Draws sizes, roughness and friction of one fit: its parameters. */
-  [[nodiscard]] fits::FitForceParameters DrawParameters(std::size_t mate,
-                                                        std::span<const std::uint64_t> values) const;
+  [[nodiscard]] fits::FitForceParameters DrawParameters(
+      std::size_t mate, std::span<const std::uint64_t> values) const;
 
   /** Judges a product with these fits: all but run, cell, seed and time. @pre one for each mate. */
   [[nodiscard]] RunResult Judge(std::span<const MadeFit> fits, const Plan& plan) const;

@@ -25,12 +25,12 @@ using yaml::YamlFields;
 
 constexpr std::size_t kLargestPlan = 1'000'000;  // [bytes]: what YamlDocument reads.
 constexpr std::size_t kMostVariants = 1000;      // of one list: a choice, more than a page can show
-constexpr std::int64_t kMostRuns = 1'000'000'000'000;     // 1e12: years on any machine. A choice.
-constexpr std::int64_t kMostCells = 1'000'000;            // Each has a summary in memory: a choice.
-constexpr int kMostShardRuns = 1'000'000;                 // A shard is made in memory: about 100 MB.
-constexpr double kMostSeeds = 2'000'000'000;              // of one cell: what an int has
-constexpr double kLargestPress = 1e9;                     // [N]: no press is so strong
-constexpr double kLargestDeviation_um = 10'000;           // beyond the widest zone of ISO 286
+constexpr std::int64_t kMostRuns = 1'000'000'000'000;  // 1e12: years on any machine. A choice.
+constexpr std::int64_t kMostPlanCells = 1'000'000;     // Each has a summary in memory: a choice.
+constexpr int kMostShardRuns = 1'000'000;              // A shard is made in memory: about 100 MB.
+constexpr double kMostSeeds = 2'000'000'000;           // of one cell: what an int has
+constexpr double kLargestPress = 1e9;                  // [N]: no press is so strong
+constexpr double kLargestDeviation_um = 10'000;        // beyond the widest zone of ISO 286
 constexpr std::array<std::string_view, 3> kPersons{"careful", "hasty", "stiff"};
 
 /** Whether a text is a valid id: ids are joined by " / " in names of cells. */
@@ -118,7 +118,8 @@ class PlanReader {
       Variant variant;
       variant.id = ReadId(&one);
       if (!variant.id.empty() && !ids.insert(variant.id).second) {
-        document_->Refuse(node, fmt::format("the id \"{}\" occurs twice in \"{}\"", variant.id, key),
+        document_->Refuse(node,
+                          fmt::format("the id \"{}\" occurs twice in \"{}\"", variant.id, key),
                           "give each an id of its own");
       }
       read(&one, &variant);
@@ -156,9 +157,10 @@ class PlanReader {
       deviations.push_back(units::FromUm(deviation_um));
     }
     if (deviations.empty()) {
-      document_->Refuse(node, fmt::format("\"{}\" of {} has no deviation, or one out of range", key,
-                                          fields->entity()),
-                        "write measured deviations from the nominal size in um: [3, 5.5, -2]");
+      document_->Refuse(
+          node,
+          fmt::format("\"{}\" of {} has no deviation, or one out of range", key, fields->entity()),
+          "write measured deviations from the nominal size in um: [3, 5.5, -2]");
     }
     return deviations;
   }
@@ -226,7 +228,8 @@ class PlanReader {
     for (const std::string& word : words) {
       const auto found = std::find(kPersons.begin(), kPersons.end(), word);
       if (found == kPersons.end()) {
-        document_->Refuse(fields->Get("persons"), fmt::format("the person \"{}\" is not known", word),
+        document_->Refuse(fields->Get("persons"),
+                          fmt::format("the person \"{}\" is not known", word),
                           fmt::format("write one or more of: {}", fmt::join(kPersons, ", ")));
         return;
       }
@@ -273,10 +276,10 @@ class PlanReader {
     if (document_->error()) {
       return;
     }
-    if (plan_->CountCells() > kMostCells) {
+    if (plan_->CountCells() > kMostPlanCells) {
       document_->Refuse(fields.node(),
                         fmt::format("the plan has {} combinations", plan_->CountCells()),
-                        fmt::format("shorten its lists: at most {} are possible", kMostCells));
+                        fmt::format("shorten its lists: at most {} are possible", kMostPlanCells));
     } else if (plan_->CountCells() > kMostRuns / plan_->seeds.count) {
       document_->Refuse(fields.node(), "the plan has more than 1e12 runs",
                         "lower the count of seeds");

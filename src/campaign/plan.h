@@ -41,7 +41,8 @@ inline constexpr std::array<std::string_view, 4> kSpreads{"zone", "capability", 
 /** Fits of one variant of the products. */
 struct FitVariant {
   std::string id;
-  std::vector<std::string> assignments;  ///< "AXIS=H7/p6" (mates::AssignFit); none: as in the files.
+  std::vector<std::string>
+      assignments;  ///< "AXIS=H7/p6" (mates::AssignFit); none: as in the files.
 };
 
 /** A range of values that are equally likely. */
@@ -82,28 +83,31 @@ struct Seeds {
 
 /** What of Sobol's indices is calculated. */
 struct SensitivityOptions {
-  int samples{4096};    ///< Rows of A and B, 64 to 1,000,000.
-  int resamples{500};   ///< Bootstrap samples, 100 to 10,000.
+  int samples{4096};   ///< Rows of A and B, 64 to 1,000,000.
+  int resamples{500};  ///< Bootstrap samples, 100 to 10,000.
 };
 
 struct Plan {
   std::string id;
   Method method{Method::kFits};
-  std::vector<std::filesystem::path> products;  ///< Relative ones are resolved from the plan's file.
+  std::vector<std::filesystem::path>
+      products;  ///< Relative ones are resolved from the plan's file.
   std::vector<FitVariant> fits;
   std::vector<SizeVariant> sizes;
   std::vector<MaterialVariant> materials;
   std::vector<simulation::PersonKind> persons;
   Seeds seeds;
-  double press_force{0};    ///< Largest force of the press [N]; 0: without limit.
-  bool may_yield{true};     ///< Whether a product with a part beyond its elastic limit is complete.
+  double press_force{0};  ///< Largest force of the press [N]; 0: without limit.
+  bool may_yield{true};   ///< Whether a product with a part beyond its elastic limit is complete.
   std::int64_t shard_runs{10'000};
   std::optional<SensitivityOptions> sensitivity;
   std::filesystem::path file;  ///< Where it was read.
   std::string text;            ///< Its bytes.
 
   [[nodiscard]] std::int64_t CountCells() const;
+
   [[nodiscard]] std::int64_t CountRuns() const { return CountCells() * seeds.count; }
+
   [[nodiscard]] std::int64_t CountShards() const;
 };
 

@@ -7,12 +7,14 @@
 
 #include "assembly/prepare_model.h"
 #include "assembly/run_assembly.h"
+#include "base/shell_words.h"
 #include "fits/materials.h"
 
 namespace hvas::campaign {
 namespace {
 
-constexpr std::size_t kMostKept = 16;  // Combinations in memory; shards follow each other. A choice.
+constexpr std::size_t kMostKept =
+    16;  // Combinations in memory; shards follow each other. A choice.
 
 /** Sets what the forces of fits and the masses need to know of a material. */
 void SetMaterial(const fits::Material& standard, product::Part* part) {
@@ -42,8 +44,8 @@ Result<void> SetMaterials(const MaterialVariant& variant, const Plan& plan,
     }
     if (!is_found) {
       return Fail(ErrorCode::kInvalid,
-                  fmt::format("materials of \"{}\": {} has no part with the name \"{}\"", variant.id,
-                              product->source, wanted.part),
+                  fmt::format("materials of \"{}\": {} has no part with the name \"{}\"",
+                              variant.id, product->source, wanted.part),
                   plan.file.string(), "name a part that `hvas inspect` lists, or write all");
     }
   }
@@ -52,21 +54,6 @@ Result<void> SetMaterials(const MaterialVariant& variant, const Plan& plan,
 
 bool HasPlainSizes(const SizeVariant& sizes) {
   return sizes.spread == Spread::kZone && !sizes.friction && !sizes.roughness;
-}
-
-/** A word of a command line, in quotes where a shell needs them. */
-std::string Quote(const std::string& word) {
-  const bool is_plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '/' || c == '.' || c == '_' || c == '-' || c == '=';
-  });
-  if (is_plain && !word.empty()) {
-    return word;
-  }
-  std::string quoted = "'";
-  for (const char c : word) {
-    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return quoted + "'";
 }
 
 /** Whether two combinations have one product: all but the person is the same. */
@@ -83,9 +70,8 @@ CellStore::CellStore(const Plan* plan, assembly::OpenOptions open)
 
 CellStore::CellResult CellStore::Prepare(std::int64_t index) {
   const std::lock_guard lock(mutex_);
-  const auto kept = std::find_if(cells_.begin(), cells_.end(), [index](const auto& cell) {
-    return cell->cell.index == index;
-  });
+  const auto kept = std::find_if(cells_.begin(), cells_.end(),
+                                 [index](const auto& cell) { return cell->cell.index == index; });
   if (kept != cells_.end()) {
     return *kept;
   }
@@ -122,8 +108,8 @@ CellStore::CellResult CellStore::PrepareNew(std::int64_t index) {
   if (!set) {
     return Unexpected(set.error());
   }
-  auto fits = FitModel::Make(prepared->product, plan_->sizes[prepared->cell.sizes],
-                             &prepared->diagnostics);
+  auto fits =
+      FitModel::Make(prepared->product, plan_->sizes[prepared->cell.sizes], &prepared->diagnostics);
   if (!fits) {
     return Unexpected(fits.error());
   }
@@ -196,17 +182,16 @@ std::string DescribePlay(const Plan& plan, const RunResult& run) {
   const SizeVariant& sizes = plan.sizes[cell.sizes];
   if (!HasPlainSizes(sizes) || !plan.materials[cell.material].parts.empty()) {
     return fmt::format("hvas campaign play {} {} --record run-{}.hvasrec",
-                       Quote(plan.file.string()), run.run, run.run);
+                       QuoteWord(plan.file.string()), run.run, run.run);
   }
-  std::string words = "hvas assemble " + Quote(plan.products[cell.product].string());
+  std::string words = "hvas assemble " + QuoteWord(plan.products[cell.product].string());
   for (const std::string& fit : plan.fits[cell.fit].assignments) {
-    words += " --fit " + Quote(fit);
+    words += " --fit " + QuoteWord(fit);
   }
   if (const auto person = plan.persons[cell.person]; person != simulation::PersonKind::kCareful) {
     words += fmt::format(" --person {}", simulation::ToString(person));
   }
-  return words +
-         fmt::format(" --sizes any --seed {} --record run-{}.hvasrec", run.seed, run.run);
+  return words + fmt::format(" --sizes any --seed {} --record run-{}.hvasrec", run.seed, run.run);
 }
 
 }  // namespace hvas::campaign

@@ -73,7 +73,7 @@ struct PlayOptions {
 [[nodiscard]] RunResult CalcRun(const PreparedCell& cell, const Plan& plan, std::uint64_t seed);
 
 /** Words that play a run: `hvas assemble FILE --seed S ...` where that program draws the same
- product, or else `hvas campaign play`. @param plan_file  As the user names the plan. */
+ product, or else `hvas campaign play`. */
 [[nodiscard]] std::string DescribePlay(const Plan& plan, const RunResult& run);
 
 }  // namespace hvas::campaign

@@ -13,8 +13,8 @@
 
 namespace hvas::campaign {
 
-/** Calculates the rows of a shard, in the order of their runs. The same plan and files give the same
- rows. Errors: those of CellStore::Prepare and PlayRun; kCancelled after a stop. */
+/** Calculates the rows of a shard, in the order of their runs. The same plan and files give the
+ same rows. Errors: those of CellStore::Prepare and PlayRun; kCancelled after a stop. */
 [[nodiscard]] Result<std::vector<RunResult>> CalcShard(CellStore* cells, std::int64_t shard,
                                                        const std::stop_token& stop = {});
 
@@ -27,8 +27,8 @@ struct RunCampaignOptions {
 
 /** What a call of RunShards has done. */
 struct RunCampaignReport {
-  std::int64_t kept{0};        ///< Shards that were there.
-  std::int64_t calculated{0};  ///< Shards that were written.
+  std::int64_t kept{0};              ///< Shards that were there.
+  std::int64_t calculated{0};        ///< Shards that were written.
   std::vector<std::string> damaged;  ///< Errors of files that were there and are replaced.
 };
 

@@ -9,8 +9,8 @@
 namespace hvas::campaign {
 namespace {
 
-constexpr int kShardFormat = 1;             // Of the tables; counts up with each change.
-constexpr std::int64_t kPerFolder = 1000;   // Files that a file system lists at once: a choice.
+constexpr int kShardFormat = 1;            // Of the tables; counts up with each change.
+constexpr std::int64_t kPerFolder = 1000;  // Files that a file system lists at once: a choice.
 
 std::string DigestRows(const std::vector<RunResult>& rows) {
   Digest digest;

@@ -16,9 +16,9 @@
 namespace hvas::campaign {
 namespace {
 
-constexpr double kLeastForce = 1e-3;    // [N]: what a scale does not show.
-constexpr double kStepRatio = 1.005;    // Of the ends of a step: half a per cent.
-constexpr int kCoarsestGrade = 18;      // of ISO 286
+constexpr double kLeastForce = 1e-3;  // [N]: what a scale does not show.
+constexpr double kStepRatio = 1.005;  // Of the ends of a step: half a per cent.
+constexpr int kCoarsestGrade = 18;    // of ISO 286
 
 /** What is counted while the rows of a combination go by. */
 struct CellCounts {
@@ -145,9 +145,10 @@ class Collector {
       : folder_(folder), options_(options), cells_(&folder->plan(), options->open) {
     const auto same = folder->CheckInputs(options->program);
     if (!same) {
-      summary_.notes = "tolerances, costs and effects are missing, as they need the CAD files and "
-                       "the program of the campaign: " +
-                       same.error().ToString();
+      summary_.notes =
+          "tolerances, costs and effects are missing, as they need the CAD files and "
+          "the program of the campaign: " +
+          same.error().ToString();
     }
     has_products_ = same.has_value();
   }

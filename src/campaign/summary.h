@@ -28,7 +28,8 @@ class ForceCounts {
   /** Counts a force [N]. Forces up to 1 mN are zero. */
   void Add(double force);
 
-  /** The force that a share p in [0, 1] of the values does not exceed [N]; 0 where there is none. */
+  /** The force that a share p in [0, 1] of the values does not exceed [N]; 0 where there is none.
+   */
   [[nodiscard]] double Quantile(double p) const;
 
   [[nodiscard]] double max() const { return max_; }
@@ -86,10 +87,10 @@ struct CellSummary {
   double force_mean{0};                    ///< [N]
   double force_max{0};                     ///< [N]
   std::array<double, kForceShares.size()> force_quantiles{};  ///< [N]
-  double clearance_min{0};   ///< Least of all [m]
-  double clearance_mean{0};  ///< [m]
-  double time_mean{0};       ///< [s]; 0 with the method fits.
-  std::vector<FailureCount> failures;  ///< The most frequent first.
+  double clearance_min{0};                                    ///< Least of all [m]
+  double clearance_mean{0};                                   ///< [m]
+  double time_mean{0};                                        ///< [s]; 0 with the method fits.
+  std::vector<FailureCount> failures;                         ///< The most frequent first.
   // The following need the CAD files; they are empty where these are not there.
   std::optional<double> tolerance;  ///< Sum of the widths of all zones [m].
   std::optional<int> cost_rank;     ///< See CalcCostRank.
@@ -110,7 +111,7 @@ struct Summary {
   std::int64_t shards{0};
   std::int64_t runs{0};
   std::int64_t runs_done{0};
-  std::vector<std::int64_t> missing;  ///< Shards without a file.
+  std::vector<std::int64_t> missing;                          ///< Shards without a file.
   std::vector<std::pair<std::int64_t, std::string>> damaged;  ///< Shards, and what is wrong.
   std::vector<CellSummary> cells;
   std::vector<WorstRun> worst;  ///< The largest utilisation first; parts not in place before.
@@ -125,8 +126,8 @@ struct Summary {
 [[nodiscard]] int CalcCostRank(const product::Product& product);
 
 struct CollectOptions {
-  std::string program;         ///< Of this program, to compare with that of the folder.
-  assembly::OpenOptions open;  ///< For the CAD files.
+  std::string program;          ///< Of this program, to compare with that of the folder.
+  assembly::OpenOptions open;   ///< For the CAD files.
   std::filesystem::path table;  ///< A file for all rows, as SQLite; empty: none.
   std::size_t worst{10};        ///< Runs that are listed.
   std::function<void(double fraction)> progress;  ///< May be null.

@@ -157,8 +157,7 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   fit.elastic_limit_ = std::min(press->hub_limit.von_mises, press->shaft_limit.von_mises);
   fit.clearance_ = std::move(land.clearances);
   const double least = *std::min_element(fit.clearance_.begin(), fit.clearance_.end());
-  fit.max_pressure_ =
-      2 * fit.pressure_per_interference_ * std::max(0.0, -least - fit.smoothing_);
+  fit.max_pressure_ = 2 * fit.pressure_per_interference_ * std::max(0.0, -least - fit.smoothing_);
   double play = std::numeric_limits<double>::infinity();
   for (const double s : fit.clearance_) {
     play = std::min(play, std::max(0.0, s));

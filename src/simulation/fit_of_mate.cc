@@ -285,9 +285,8 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
         kFitNotShown, entity,
         fmt::format("none of {} pairs drawn for {} at {:g} mm shows a {} fit along its length "
                     "with a roughness of Rz {:g} um",
-                    fits::kMostPairsDrawn, mate.fit->code,
-                    units::ToMm(parameters.nominal_diameter), product::ToString(mate.fit->kind),
-                    units::ToUm(parameters.roughness)),
+                    fits::kMostPairsDrawn, mate.fit->code, units::ToMm(parameters.nominal_diameter),
+                    product::ToString(mate.fit->kind), units::ToUm(parameters.roughness)),
         "state a smaller roughness or another fit");
   }
   const auto force = fits::FitForce::Make(parameters);

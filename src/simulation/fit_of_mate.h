@@ -26,8 +26,8 @@ inline constexpr const char* kFitNotShown = "fit-not-shown";
  that one mate's fit does not change another's sizes. */
 [[nodiscard]] std::uint64_t CalcFitSeed(std::uint64_t seed, product::MateId mate);
 
-/** The steepest chamfer that leads in with a coefficient of friction, as an angle to the axis [rad];
- steeper ones count as this. */
+/** The steepest chamfer that leads in with a coefficient of friction, as an angle to the axis
+ [rad]; steeper ones count as this. */
 [[nodiscard]] double CalcSteepestLeadIn(double friction) noexcept;
 
 /** All that is known of the fit of a mate before its sizes are drawn. */

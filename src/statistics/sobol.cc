@@ -12,9 +12,9 @@
 namespace hvas::statistics {
 namespace {
 
-constexpr int kFewestResamples = 100;    // An end of a 95 % interval is the third of these.
-constexpr int kMostResamples = 10'000;   // The intervals do not become better: a choice.
-constexpr std::size_t kFewestRows = 2;   // A variance needs two.
+constexpr int kFewestResamples = 100;   // An end of a 95 % interval is the third of these.
+constexpr int kMostResamples = 10'000;  // The intervals do not become better: a choice.
+constexpr std::size_t kFewestRows = 2;  // A variance needs two.
 
 Result<void> CheckSobolSample(const SobolSample& sample, const SobolOptions& options) {
   const auto refuse = [](const char* message, const char* remedy) {

@@ -22,8 +22,7 @@ std::string Print(double x) {
 
 Result<YamlDocument> YamlDocument::Parse(const std::string& text, const std::string& file) {
   if (text.size() > kMaxBytes) {
-    return Fail(ErrorCode::kInvalid, "the file is too long", file,
-                "shorten it to less than 1 MB");
+    return Fail(ErrorCode::kInvalid, "the file is too long", file, "shorten it to less than 1 MB");
   }
   YamlDocument document;
   document.file_ = file;
