@@ -21,8 +21,8 @@ inline constexpr const char* kPlanFormat = "hvas-campaign-1";
 
 /** How a run is calculated. */
 enum class Method {
-  kFits,      ///< By the formulas of the fits alone: some microseconds.
-  kAssemble,  ///< By a simulated person in virtual time, with the whole haptic tick: seconds.
+  kFits,      ///< The formulas of the fits alone are evaluated: some microseconds.
+  kAssemble,  ///< A simulated person assembles in virtual time, with the whole tick: seconds.
 };
 
 inline constexpr std::array<std::string_view, 2> kMethods{"fits", "assemble"};

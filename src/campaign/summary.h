@@ -48,7 +48,7 @@ inline constexpr std::array<double, 5> kForceShares{0.05, 0.5, 0.95, 0.99, 0.999
 struct FailureCount {
   Cause cause{Cause::kNone};
   std::int64_t entity{-1};
-  std::string name;  ///< Of the mate or part, for people; may be empty.
+  std::string name;  ///< Name of the mate or part; may be empty.
   std::int64_t count{0};
 };
 
@@ -126,8 +126,8 @@ struct Summary {
 [[nodiscard]] int CalcCostRank(const product::Product& product);
 
 struct CollectOptions {
-  std::string program;          ///< Of this program, to compare with that of the folder.
-  assembly::OpenOptions open;   ///< For the CAD files.
+  std::string program;          ///< This program, to compare with that of the folder.
+  assembly::OpenOptions open;   ///< Options for opening the CAD files.
   std::filesystem::path table;  ///< A file for all rows, as SQLite; empty: none.
   std::size_t worst{10};        ///< Runs that are listed.
   std::function<void(double fraction)> progress;  ///< May be null.

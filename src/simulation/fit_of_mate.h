@@ -32,7 +32,7 @@ inline constexpr const char* kFitNotShown = "fit-not-shown";
 
 /** All that is known of the fit of a mate before its sizes are drawn. */
 struct FitToDraw {
-  fits::FitForceParameters parameters;  ///< Without sizes and seed where these are drawn.
+  fits::FitForceParameters parameters;  ///< Sizes and seed are missing where these are drawn.
   fits::PairToDraw pair;                ///< Its choice is kAny where sizes have no kind to show.
 };
 

@@ -53,7 +53,7 @@ struct CampaignOptions {
   bool is_dry{false};
   std::string shards;
   std::int64_t run{0};
-  int array_size{campaign::SlurmOptions().array_size};
+  int array_size{campaign::SlurmOptions().array_size};  ///< Tasks of an array: that default.
   std::vector<std::string> sbatch;
 };
 

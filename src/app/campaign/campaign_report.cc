@@ -28,10 +28,11 @@ Json MakeIndexJson(const std::optional<statistics::SobolIndex>& index) {
   if (!index) {
     return nullptr;
   }
-  return {{"first", index->first},
-          {"first_ci", {index->first_ci.low, index->first_ci.high}},
-          {"total", index->total},
-          {"total_ci", {index->total_ci.low, index->total_ci.high}}};
+  constexpr double kNoMinus = 0;  // Added, it leaves no zero with a minus.
+  return {{"first", index->first + kNoMinus},
+          {"first_ci", {index->first_ci.low + kNoMinus, index->first_ci.high + kNoMinus}},
+          {"total", index->total + kNoMinus},
+          {"total_ci", {index->total_ci.low + kNoMinus, index->total_ci.high + kNoMinus}}};
 }
 
 Json MakeEffectJson(const campaign::MainEffect& effect) {

@@ -50,19 +50,21 @@ class CampaignFolderTest : public ::testing::Test {
     return *folder;
   }
 
-  static RunCampaignReport Run(const CampaignFolder& folder, unsigned jobs) {
+  RunCampaignReport Run(const CampaignFolder& folder, unsigned jobs) {
     RunCampaignOptions options;
     options.jobs = jobs;
+    options.open.cache_directory = scratch_ / "cache";
     const auto report = RunCampaign(folder, kTestProgram, options);
     EXPECT_TRUE(report) << report.error().ToString();
     return report.value_or(RunCampaignReport());
   }
 
-  static Summary CollectFolder(const CampaignFolder& folder,
-                               const std::filesystem::path& table = {}) {
+  Summary CollectFolder(const CampaignFolder& folder,
+                        const std::filesystem::path& table = {}) {
     CollectOptions options;
     options.program = kTestProgram;
     options.table = table;
+    options.open.cache_directory = scratch_ / "cache";
     const auto summary = Collect(folder, options);
     EXPECT_TRUE(summary) << summary.error().ToString();
     return summary.value_or(Summary());
