@@ -1,6 +1,7 @@
 #include "app/campaign/campaign_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +20,8 @@ using campaign::Summary;
 
 constexpr std::size_t kMostRows = 50;    // Of a table for people; --json has all. A choice.
 constexpr std::size_t kMostFactors = 8;  // Likewise.
+constexpr std::size_t kMostEffects = 3;  // Combinations whose factors are listed: likewise.
+constexpr std::int64_t kFewestRuns = 100;  // Ten for each bin of an effect: fewer are noise.
 
 std::string NameCause(campaign::Cause cause) {
   return std::string(campaign::kCauses[static_cast<std::size_t>(cause)]);
@@ -107,12 +110,17 @@ std::string MakeYieldTable(const Summary& summary) {
   return table.ToText();
 }
 
+/** Formats an index of Sobol without a minus before a zero. */
+std::string FormatIndex(double index) {
+  return fmt::format("{:.3f}", std::round(1e3 * index) / 1e3 + 0.0);
+}
+
 std::string MakeFactorTable(const CellSummary& cell) {
-  if (cell.effects.empty()) {
+  if (cell.effects.empty() || cell.runs < kFewestRuns) {
     return {};
   }
-  TextTable table({cell.name + ": factor\n", "range of\nyield, %", "range of\nforce, N",
-                   "force:\nfirst", "Sobol\ntotal", "complete:\nfirst", "Sobol\ntotal"});
+  TextTable table({cell.name + "\nfactor", "range of\nyield, %", "range of\nforce, N",
+                   "S force\nfirst", "\ntotal", "S complete\nfirst", "\ntotal"});
   for (std::size_t i = 0; i < std::min(cell.effects.size(), kMostFactors); ++i) {
     const campaign::MainEffect& effect = cell.effects[i];
     std::vector<std::string> cells{effect.factor, fmt::format("{:.3f}", 100 * effect.yield_range),
@@ -123,8 +131,8 @@ std::string MakeFactorTable(const CellSummary& cell) {
     for (const auto member :
          {&campaign::SobolOfFactor::force, &campaign::SobolOfFactor::complete}) {
       const bool has_index = found != cell.sobol.end() && ((*found).*member).has_value();
-      cells.push_back(has_index ? fmt::format("{:.3f}", ((*found).*member)->first) : "-");
-      cells.push_back(has_index ? fmt::format("{:.3f}", ((*found).*member)->total) : "-");
+      cells.push_back(has_index ? FormatIndex(((*found).*member)->first) : "-");
+      cells.push_back(has_index ? FormatIndex(((*found).*member)->total) : "-");
     }
     table.Add(std::move(cells));
   }
@@ -172,7 +180,7 @@ std::string MakeCampaignText(const campaign::Plan& plan, const Summary& summary)
       "{}: {} of {} runs, method {}, digest {}\n\n", summary.id, summary.runs_done, summary.runs,
       campaign::kMethods[static_cast<std::size_t>(plan.method)], summary.digest);
   text += MakeYieldTable(summary);
-  for (std::size_t i = 0; i < std::min(summary.cells.size(), kMostFactors); ++i) {
+  for (std::size_t i = 0; i < std::min(summary.cells.size(), kMostEffects); ++i) {
     text += MakeFactorTable(summary.cells[i]);
   }
   if (!summary.worst.empty()) {
