@@ -1,6 +1,7 @@
 #include "campaign/prepared_cell.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,6 +53,17 @@ Result<void> SetMaterials(const MaterialVariant& variant, const Plan& plan,
   return {};
 }
 
+/** Names the place in the plan of an error about an assignment, which knows only that of `--fit`.
+ */
+Error NamePlan(Error error, const Plan& plan, const Cell& cell) {
+  constexpr std::string_view kOption = "--fit ";
+  if (error.where.starts_with(kOption)) {
+    error.where = fmt::format("{}: {} of fits \"{}\"", plan.file.string(),
+                              error.where.substr(kOption.size()), plan.fits[cell.fit].id);
+  }
+  return error;
+}
+
 bool HasPlainSizes(const SizeVariant& sizes) {
   return sizes.spread == Spread::kZone && !sizes.friction && !sizes.roughness;
 }
@@ -100,7 +112,7 @@ CellStore::CellResult CellStore::PrepareNew(std::int64_t index) {
   open.fits = plan_->fits[prepared->cell.fit].assignments;
   auto product = assembly::OpenProduct(open, &prepared->diagnostics);
   if (!product) {
-    return Unexpected(product.error());
+    return Unexpected(NamePlan(product.error(), *plan_, prepared->cell));
   }
   prepared->product = *std::move(product);
   const auto set =

@@ -21,7 +21,8 @@ namespace hvas::campaign {
 struct RunCampaignOptions {
   unsigned jobs{0};            ///< Shards calculated at a time; 0: one for each core.
   assembly::OpenOptions open;  ///< Options for opening; file and fits are the plan's.
-  std::function<void(std::int64_t done, std::int64_t total)> progress;  ///< Counts runs; may be null.
+  std::function<void(std::int64_t done, std::int64_t total)>
+      progress;  ///< Counts runs; may be null.
   std::stop_token stop;
 };
 

@@ -25,8 +25,8 @@ struct SobolIndex {
 };
 
 struct SobolOptions {
-  int resamples{500};     ///< Bootstrap samples of rows, 100 to 10,000.
-  std::uint64_t seed{1};  ///< Any number: the bootstrap samples follow from it.
+  int resamples{500};       ///< Bootstrap samples of rows, 100 to 10,000.
+  std::uint64_t seed{1};    ///< Any number: the bootstrap samples follow from it.
   double confidence{0.95};  ///< Share of the intervals, in (0, 1): the usual one.
 };
 

@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 using campaign::CellSummary;
 using campaign::Summary;
 
-constexpr std::size_t kMostRows = 50;    // Of a table for people; --json has all. A choice.
-constexpr std::size_t kMostFactors = 8;  // Likewise.
-constexpr std::size_t kMostEffects = 3;  // Combinations whose factors are listed: likewise.
+constexpr std::size_t kMostRows = 50;      // Of a table for people; --json has all. A choice.
+constexpr std::size_t kMostFactors = 8;    // Likewise.
+constexpr std::size_t kMostEffects = 3;    // Combinations whose factors are listed: likewise.
 constexpr std::int64_t kFewestRuns = 100;  // Ten for each bin of an effect: fewer are noise.
 
 std::string NameCause(campaign::Cause cause) {

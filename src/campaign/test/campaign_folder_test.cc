@@ -59,8 +59,7 @@ class CampaignFolderTest : public ::testing::Test {
     return report.value_or(RunCampaignReport());
   }
 
-  Summary CollectFolder(const CampaignFolder& folder,
-                        const std::filesystem::path& table = {}) {
+  Summary CollectFolder(const CampaignFolder& folder, const std::filesystem::path& table = {}) {
     CollectOptions options;
     options.program = kTestProgram;
     options.table = table;
