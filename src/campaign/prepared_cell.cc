@@ -10,6 +10,7 @@
 #include "assembly/run_assembly.h"
 #include "base/shell_words.h"
 #include "fits/materials.h"
+#include "mates/assignments.h"
 
 namespace hvas::campaign {
 namespace {
@@ -97,6 +98,23 @@ CellStore::CellResult CellStore::Prepare(std::int64_t index) {
   return made;
 }
 
+Result<CellStore::OpenedProduct> CellStore::Open(std::size_t index) {
+  if (opened_ && opened_->index == index) {
+    return *opened_;
+  }
+  OpenedProduct opened;
+  opened.index = index;
+  assembly::OpenOptions open = open_;
+  open.file = plan_->products[index];
+  auto product = assembly::OpenProduct(open, &opened.diagnostics);
+  if (!product) {
+    return Unexpected(product.error());
+  }
+  opened.product = *std::move(product);
+  opened_ = std::move(opened);
+  return *opened_;
+}
+
 CellStore::CellResult CellStore::PrepareNew(std::int64_t index) {
   auto prepared = std::make_shared<PreparedCell>();
   prepared->cell = FindCell(*plan_, index);
@@ -107,14 +125,17 @@ CellStore::CellResult CellStore::PrepareNew(std::int64_t index) {
     *prepared = PreparedCell{prepared->cell, (*same)->product, (*same)->fits, (*same)->diagnostics};
     return prepared;
   }
-  assembly::OpenOptions open = open_;
-  open.file = plan_->products[prepared->cell.product];
-  open.fits = plan_->fits[prepared->cell.fit].assignments;
-  auto product = assembly::OpenProduct(open, &prepared->diagnostics);
-  if (!product) {
-    return Unexpected(NamePlan(product.error(), *plan_, prepared->cell));
+  const auto opened = Open(prepared->cell.product);
+  if (!opened) {
+    return Unexpected(opened.error());
   }
-  prepared->product = *std::move(product);
+  prepared->product = opened->product;
+  prepared->diagnostics = opened->diagnostics;
+  for (const std::string& fit : plan_->fits[prepared->cell.fit].assignments) {
+    if (const auto assigned = mates::AssignFit(&prepared->product, fit); !assigned) {
+      return Unexpected(NamePlan(assigned.error(), *plan_, prepared->cell));
+    }
+  }
   const auto set =
       SetMaterials(plan_->materials[prepared->cell.material], *plan_, &prepared->product);
   if (!set) {
@@ -130,9 +151,12 @@ CellStore::CellResult CellStore::PrepareNew(std::int64_t index) {
 }
 
 RunResult CalcRun(const PreparedCell& cell, const Plan& plan, std::uint64_t seed) {
-  std::vector<std::uint64_t> values(cell.fits.factors().size());
+  // Each thread keeps the memory of these from one run to the next.
+  thread_local std::vector<std::uint64_t> values;
+  thread_local std::vector<MadeFit> made;
+  values.resize(cell.fits.factors().size());
   cell.fits.DrawFactors(seed, values);
-  std::vector<MadeFit> made;
+  made.clear();
   made.reserve(cell.fits.mates().size());
   for (std::size_t i = 0; i < cell.fits.mates().size(); ++i) {
     made.push_back(cell.fits.CalcFit(i, values));

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -47,12 +47,21 @@ class CellStore {
  private:
   using CellResult = Result<std::shared_ptr<const PreparedCell>>;
 
+  /** A product with the fits that its files state. */
+  struct OpenedProduct {
+    std::size_t index{0};  ///< Index into Plan::products.
+    product::Product product;
+    Diagnostics diagnostics;
+  };
+
+  [[nodiscard]] Result<OpenedProduct> Open(std::size_t index);
   [[nodiscard]] CellResult PrepareNew(std::int64_t index);
 
   const Plan* plan_;
   assembly::OpenOptions open_;
   std::shared_ptr<contact::ShapeCache> shapes_;
   std::mutex mutex_;
+  std::optional<OpenedProduct> opened_;                    // The one of the newest combination.
   std::deque<std::shared_ptr<const PreparedCell>> cells_;  // The newest last.
 };
 
