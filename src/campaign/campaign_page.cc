@@ -31,7 +31,7 @@ std::string FormatPercent(double share) {
 }
 
 std::string FormatForce(double force) {
-  return fmt::format("{:.4g}", force);
+  return force < 100 ? fmt::format("{:.3g}", force) : fmt::format("{:.0f}", force);
 }
 
 std::string MakeRow(const Cells& cells, const char* element) {
@@ -136,6 +136,11 @@ std::string PlotToleranceYield(const Summary& summary) {
   if (marks.points.size() < 2) {
     return {};
   }
+  const auto [narrow, wide] =
+      std::minmax_element(marks.points.begin(), marks.points.end(),
+                          [](const auto& a, const auto& b) { return a.x < b.x; });
+  constexpr double kMargin = 5;  // [um] beside the marks, so that each is seen whole: a choice.
+  const pages::PlotRange range{narrow->x - kMargin, wide->x + kMargin};
   PlotFigure figure;
   figure.title = "Yield over tolerance";
   figure.description = "Share of complete products over the sum of the widths of all zones.";
@@ -143,6 +148,7 @@ std::string PlotToleranceYield(const Summary& summary) {
   PlotPanel panel;
   panel.x_label = "sum of the tolerances of all fits [um]";
   panel.y_label = "complete [%]";
+  panel.x = range;
   panel.series.push_back(std::move(marks));
   figure.panels.push_back(std::move(panel));
   return pages::ToSvg(figure);

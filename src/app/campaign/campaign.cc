@@ -365,9 +365,8 @@ void AddRunPlan(CLI::App* group, int* status) {
   AddRunningOptions(command, options);
   AddResultOptions(command, options);
   command->footer(
-      "A campaign that was interrupted is resumed by running it again; shards that are damaged "
-      "are\n"
-      "calculated anew. The digest does not depend on --jobs.\n"
+      "A campaign that was interrupted is resumed by running it again; damaged shards\n"
+      "are calculated anew. The digest does not depend on --jobs.\n"
       "Examples:\n"
       "  hvas campaign run press.yaml -o press.html\n"
       "  hvas campaign run press.yaml --jobs 2 --json | jq '.cells[] | {name, yield}'\n"
@@ -431,8 +430,9 @@ void AddSubmit(CLI::App* group, int* status) {
   command->add_flag("--dry-run", options->is_dry, "Write the script, and submit nothing");
   AddJsonFlag(command, &options->is_json, "campaign_submission");
   command->footer(
-      "The folder, the CAD files and the program have to have the same paths on all nodes. Tasks\n"
-      "whose node fails are put into the queue again. Submit again to resume what is missing.\n"
+      "The folder, the CAD files and the program have to have the same paths on all\n"
+      "nodes. Tasks whose node fails are put into the queue again. Submit again to\n"
+      "resume what is missing.\n"
       "Examples:\n"
       "  hvas campaign submit press.yaml --folder /shared/press\n"
       "  hvas campaign submit press.yaml --sbatch=--partition=long --sbatch=--time=60");

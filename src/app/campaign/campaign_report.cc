@@ -96,16 +96,20 @@ Json MakeCellJson(const campaign::Plan& plan, const CellSummary& cell) {
   return json;
 }
 
+/** Formats a force in newtons: three digits, or whole newtons. */
+std::string FormatForce(double force) {
+  return force < 100 ? fmt::format("{:.3g}", force) : fmt::format("{:.0f}", force);
+}
+
 std::string MakeYieldTable(const Summary& summary) {
   TextTable table({"combination\n", "runs\n", "complete\n%", "force, N\nmedian", "\n99 %",
                    "\nlargest", "\nfails first"});
   for (std::size_t i = 0; i < std::min(summary.cells.size(), kMostRows); ++i) {
     const CellSummary& cell = summary.cells[i];
-    table.Add(
-        {cell.name, fmt::format("{}", cell.runs), fmt::format("{:.3f}", 100 * cell.yield->share),
-         fmt::format("{:.4g}", cell.force_quantiles[1]),
-         fmt::format("{:.4g}", cell.force_quantiles[3]), fmt::format("{:.4g}", cell.force_max),
-         cell.failures.empty() ? "-" : NameCause(cell.failures.front().cause)});
+    table.Add({cell.name, fmt::format("{}", cell.runs),
+               fmt::format("{:.3f}", 100 * cell.yield->share), FormatForce(cell.force_quantiles[1]),
+               FormatForce(cell.force_quantiles[3]), FormatForce(cell.force_max),
+               cell.failures.empty() ? "-" : NameCause(cell.failures.front().cause)});
   }
   return table.ToText();
 }
@@ -124,7 +128,7 @@ std::string MakeFactorTable(const CellSummary& cell) {
   for (std::size_t i = 0; i < std::min(cell.effects.size(), kMostFactors); ++i) {
     const campaign::MainEffect& effect = cell.effects[i];
     std::vector<std::string> cells{effect.factor, fmt::format("{:.3f}", 100 * effect.yield_range),
-                                   fmt::format("{:.4g}", effect.force_range)};
+                                   FormatForce(effect.force_range)};
     const auto found = std::find_if(cell.sobol.begin(), cell.sobol.end(), [&](const auto& sobol) {
       return sobol.factor == effect.factor;
     });
