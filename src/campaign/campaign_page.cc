@@ -139,8 +139,8 @@ std::string PlotToleranceYield(const Summary& summary) {
   const auto [narrow, wide] =
       std::minmax_element(marks.points.begin(), marks.points.end(),
                           [](const auto& a, const auto& b) { return a.x < b.x; });
-  constexpr double kMargin = 5;  // [um] beside the marks, so that each is seen whole: a choice.
-  const pages::PlotRange range{narrow->x - kMargin, wide->x + kMargin};
+  constexpr double kMargin_um = 5;  // [um] beside the marks, so that each is seen whole: a choice.
+  const pages::PlotRange range{narrow->x - kMargin_um, wide->x + kMargin_um};
   PlotFigure figure;
   figure.title = "Yield over tolerance";
   figure.description = "Share of complete products over the sum of the widths of all zones.";

@@ -369,7 +369,7 @@ void AddRunPlan(CLI::App* group, int* status) {
       "are calculated anew. The digest does not depend on --jobs.\n"
       "Examples:\n"
       "  hvas campaign run press.yaml -o press.html\n"
-      "  hvas campaign run press.yaml --jobs 2 --json | jq '.cells[] | {name, yield}'\n"
+      "  hvas campaign run press.yaml --jobs 2 --json | jq '.cells[] | .name, .yield'\n"
       "  hvas campaign run press.yaml --table runs.sqlite");
   command->callback([options, status] { *status = RunPlan(*options); });
 }
@@ -385,7 +385,7 @@ void AddShard(CLI::App* group, int* status) {
       "Shards that are there are kept. A shard calculated twice has the same rows.\n"
       "Examples:\n"
       "  hvas campaign shard press 0-3\n"
-      "  seq 0 99 | parallel hvas campaign shard press {} --jobs 1");
+      "  seq 0 99 | xargs -P 4 -I % hvas campaign shard press % --jobs 1");
   command->callback([options, status] { *status = RunSomeShards(*options); });
 }
 
