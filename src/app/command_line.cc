@@ -15,6 +15,7 @@
 #include "app/assembly/disassemble.h"
 #include "app/assembly/path.h"
 #include "app/assembly/plan.h"
+#include "app/campaign/campaign.h"
 #include "app/command_tree.h"
 #include "app/completion.h"
 #include "app/devices/devices.h"
@@ -52,7 +53,8 @@ constexpr std::array<ExitStatus, 4> kStatuses{{
      "A negative result: a part is not in its place (hvas assemble) or has not come out "
      "(hvas disassemble), a tool cannot go on turning (hvas tool), a record was changed after it "
      "was written (hvas report, export and replay), the replay differs from the record (hvas "
-     "replay --verify), or the machine misses deadlines (hvas doctor)."},
+     "replay --verify), shards are missing or damaged (hvas campaign), or the machine misses "
+     "deadlines (hvas doctor)."},
     {"64",
      "A wrong command line: an unknown command or option, a value out of range, or options that "
      "exclude each other. Nothing was done."},
@@ -146,6 +148,7 @@ void SetGroups(CLI::App* app) {
       {"Assemble", {"studio", "plan", "assemble", "disassemble", "replay", "report"}},
       {"Write instructions, rate the design", {"instructions", "dfa", "motions"}},
       {"Calculate fits", {"fit"}},
+      {"Run products by the thousand", {"campaign"}},
       {"Run studies with participants", {"study"}},
       {"This machine", {"devices", "doctor"}},
       {"This program", {"completion", "man", "licences"}}};
@@ -188,6 +191,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddDfa(app.get(), status);
   AddMotions(app.get(), status);
   AddFit(app.get(), status);
+  AddCampaign(app.get(), status);
   AddStudy(app.get(), status);
   AddDevices(app.get(), status);
   AddDoctor(app.get(), status);

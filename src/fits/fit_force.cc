@@ -154,7 +154,10 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   fit.shaft_diameter_ = p.shaft_diameter;
   fit.pressure_per_interference_ = press->pressure_per_interference;
   fit.smoothing_ = 0.5 * press->smoothing_loss;
+  fit.elastic_limit_ = std::min(press->hub_limit.von_mises, press->shaft_limit.von_mises);
   fit.clearance_ = std::move(land.clearances);
+  const double least = *std::min_element(fit.clearance_.begin(), fit.clearance_.end());
+  fit.max_pressure_ = 2 * fit.pressure_per_interference_ * std::max(0.0, -least - fit.smoothing_);
   double play = std::numeric_limits<double>::infinity();
   for (const double s : fit.clearance_) {
     play = std::min(play, std::max(0.0, s));

@@ -111,6 +111,13 @@ class FitForce {
   /** F_in(L) [N]. */
   [[nodiscard]] double max_resistance() const noexcept { return CalcAxialResistance(length_); }
 
+  /** The largest p(l) along the joint [Pa]. */
+  [[nodiscard]] double max_pressure() const noexcept { return max_pressure_; }
+
+  /** The pressure at which the weaker side begins to yield by von Mises, or a brittle hub breaks
+   [Pa]; infinite where no strength is known. */
+  [[nodiscard]] double elastic_limit() const noexcept { return elastic_limit_; }
+
   [[nodiscard]] double length() const noexcept { return length_; }
 
   /** S at the N + 1 stations from the mouth to L [m]. */
@@ -146,6 +153,8 @@ class FitForce {
   double shaft_diameter_{0};
   double pressure_per_interference_{0};  // c_p [Pa/m].
   double smoothing_{0};                  // G / 2 [m].
+  double max_pressure_{0};               // [Pa]
+  double elastic_limit_{0};              // [Pa]
   std::vector<double> clearance_;        // S at the stations [m].
   std::vector<double> play_;             // Least of max(0, S) up to each station [m].
 };

@@ -76,6 +76,11 @@ Statement& Statement::Bind(int index, std::span<const std::byte> blob) {
   return *this;
 }
 
+Statement& Statement::BindReal(int index, double value) {
+  sqlite3_bind_double(statement_.get(), index, value);
+  return *this;
+}
+
 Statement& Statement::BindNull(int index) {
   sqlite3_bind_null(statement_.get(), index);
   return *this;
@@ -100,6 +105,10 @@ Result<void> Statement::Run() {
 
 std::int64_t Statement::ReadInt(int column) const {
   return sqlite3_column_int64(statement_.get(), column);
+}
+
+double Statement::ReadReal(int column) const {
+  return sqlite3_column_double(statement_.get(), column);
 }
 
 std::string Statement::ReadText(int column) const {
@@ -150,6 +159,22 @@ Result<Database> Database::Open(const std::filesystem::path& path, Mode mode) {
     return OpenUnwritable(path);
   }
   return database;
+}
+
+Result<Database> Database::OpenInMemory() {
+  return OpenName(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, "database in memory");
+}
+
+Result<std::string> Database::Serialize() const {
+  sqlite3_int64 size = 0;
+  unsigned char* bytes = sqlite3_serialize(database_.get(), "main", &size, 0);
+  if (bytes == nullptr) {
+    return Fail(ErrorCode::kOutOfResource, "there is no memory for a copy of the database", path_,
+                "make memory free, or the tables smaller");
+  }
+  std::string copy(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
+  sqlite3_free(bytes);
+  return copy;
 }
 
 Result<Database> Database::OpenUnwritable(const std::filesystem::path& path) {

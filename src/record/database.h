@@ -23,6 +23,7 @@ class Statement {
   Statement& Bind(int index, std::int64_t value);
   Statement& Bind(int index, std::string_view text);
   Statement& Bind(int index, std::span<const std::byte> blob);
+  Statement& BindReal(int index, double value);
   Statement& BindNull(int index);
 
   /** True when there is a row to read, false at the end. */
@@ -31,6 +32,7 @@ class Statement {
   Result<void> Run();
 
   [[nodiscard]] std::int64_t ReadInt(int column) const;
+  [[nodiscard]] double ReadReal(int column) const;
   [[nodiscard]] std::string ReadText(int column) const;
   /** Valid until the next Step(). */
   [[nodiscard]] std::span<const std::byte> ReadBlob(int column) const;
@@ -59,6 +61,13 @@ class Database {
   /** Read-only also where the folder may not be written, in which a killed writer can have left a
    journal: a journal is then read from a copy in a temporary folder. */
   static Result<Database> Open(const std::filesystem::path& path, Mode mode);
+
+  /** Makes an empty database in memory, whose bytes are those of a file (Serialize). */
+  static Result<Database> OpenInMemory();
+
+  /** Returns the whole database as the bytes of a file; equal statements give equal bytes. Errors:
+   kOutOfResource where there is no memory for a copy. */
+  [[nodiscard]] Result<std::string> Serialize() const;
 
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(std::string_view sql);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -207,27 +208,30 @@ fits::FitKind ToFitsKind(product::FitKind kind) {
   return fits::FitKind::kClearance;
 }
 
-std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
-                                                   const product::Mate& mate, std::uint64_t seed,
-                                                   fits::PairChoice pairs,
-                                                   Diagnostics* diagnostics) {
+std::uint64_t CalcFitSeed(std::uint64_t seed, product::MateId mate) {
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 over the golden ratio.
+  return seed * kGolden + mate.value();
+}
+
+double CalcSteepestLeadIn(double friction) noexcept {
+  return kSteepestLeadIn * std::atan(1 / std::max(friction, 1e-12));
+}
+
+Result<std::optional<FitToDraw>> MakeFitToDraw(const product::Product& product,
+                                               const product::Mate& mate, fits::PairChoice pairs) {
   const product::FitConditions& conditions = mate.conditions;
   if (!mate.fit || !product::IsIsoFit(mate.fit->kind) ||
       (mate.fit->code.empty() && !HasSizes(conditions))) {
-    return nullptr;
+    return std::optional<FitToDraw>();
   }
-  const std::string entity = fmt::format("mate m{}", mate.id.value());
   const double nominal = mate.fit->nominal_diameter;
   const auto zones =
       mate.fit->code.empty() ? Result<Zones>(Zones{}) : FindZones(mate.fit->code, nominal);
   if (!zones) {
-    diagnostics->Warn("fit-undefined", entity, zones.error().message,
-                      "the mate answers as a plain guide; assign another fit with --fit");
-    return nullptr;
+    return Unexpected(zones.error());
   }
-  // Every mate has its own stream, so that one mate's fit does not change another's sizes.
-  Random random(seed * 0x9e3779b97f4a7c15u + mate.id.value());
-  fits::FitForceParameters parameters;
+  FitToDraw fit;
+  fits::FitForceParameters& parameters = fit.parameters;
   parameters.nominal_diameter = nominal;
   const product::Part& hub = product.part_of(mate.a.occurrence);
   const product::Part& shaft = product.part_of(mate.b.occurrence);
@@ -248,9 +252,8 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
     AddRings(product, mate, &parameters);
   }
   parameters.lead_in_angle =
-      std::min(parameters.lead_in_angle,
-               kSteepestLeadIn * std::atan(1 / std::max(parameters.friction.in, 1e-12)));
-  fits::PairToDraw pair;
+      std::min(parameters.lead_in_angle, CalcSteepestLeadIn(parameters.friction.in));
+  fits::PairToDraw& pair = fit.pair;
   pair.hole = {zones->hole, 2 * mate.hole_radius,
                Expand(1, conditions.hole_temperature_c, hub.material)};
   pair.shaft = {zones->shaft, 2 * mate.shaft_radius,
@@ -258,12 +261,31 @@ std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& produ
   pair.kind = ToFitsKind(mate.fit->kind);
   const bool has_kind = !mate.fit->code.empty() && !HasTemperature(conditions);
   pair.choice = has_kind ? pairs : fits::PairChoice::kAny;
-  if (!fits::DrawPair(pair, &random, &parameters)) {
+  return std::optional<FitToDraw>(std::move(fit));
+}
+
+std::shared_ptr<const fits::FitForce> MakeFitForce(const product::Product& product,
+                                                   const product::Mate& mate, std::uint64_t seed,
+                                                   fits::PairChoice pairs,
+                                                   Diagnostics* diagnostics) {
+  const std::string entity = fmt::format("mate m{}", mate.id.value());
+  auto fit = MakeFitToDraw(product, mate, pairs);
+  if (!fit) {
+    diagnostics->Warn("fit-undefined", entity, fit.error().message,
+                      "the mate answers as a plain guide; assign another fit with --fit");
+    return nullptr;
+  }
+  if (!*fit) {
+    return nullptr;
+  }
+  fits::FitForceParameters& parameters = (*fit)->parameters;
+  Random random(CalcFitSeed(seed, mate.id));
+  if (!fits::DrawPair((*fit)->pair, &random, &parameters)) {
     diagnostics->Note(
         kFitNotShown, entity,
         fmt::format("none of {} pairs drawn for {} at {:g} mm shows a {} fit along its length "
                     "with a roughness of Rz {:g} um",
-                    fits::kMostPairsDrawn, mate.fit->code, units::ToMm(nominal),
+                    fits::kMostPairsDrawn, mate.fit->code, units::ToMm(parameters.nominal_diameter),
                     product::ToString(mate.fit->kind), units::ToUm(parameters.roughness)),
         "state a smaller roughness or another fit");
   }

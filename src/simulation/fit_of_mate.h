@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/diagnostics.h"
+#include "base/result.h"
 #include "fits/fit_force.h"
 #include "fits/friction.h"
 #include "fits/pair_choice.h"
@@ -19,6 +21,27 @@ inline constexpr const char* kFitNotShown = "fit-not-shown";
 
 /** The kind of a fit, as the room `fits` calls it. @pre the fit is no thread. */
 [[nodiscard]] fits::FitKind ToFitsKind(product::FitKind kind);
+
+/** Seed of the stream that draws the sizes and the surface of a mate: every mate has its own, so
+ that one mate's fit does not change another's sizes. */
+[[nodiscard]] std::uint64_t CalcFitSeed(std::uint64_t seed, product::MateId mate);
+
+/** The steepest chamfer that leads in with a coefficient of friction, as an angle to the axis
+ [rad]; steeper ones count as this. */
+[[nodiscard]] double CalcSteepestLeadIn(double friction) noexcept;
+
+/** All that is known of the fit of a mate before its sizes are drawn. */
+struct FitToDraw {
+  fits::FitForceParameters parameters;  ///< Sizes and seed are missing where these are drawn.
+  fits::PairToDraw pair;                ///< Its choice is kAny where sizes have no kind to show.
+};
+
+/** Collects what MakeFitForce draws and calculates from. None where the mate has no fit of ISO 286
+ or neither a code nor a size is known. Errors: kInvalid where the code or the size is not defined
+ by the standard. */
+[[nodiscard]] Result<std::optional<FitToDraw>> MakeFitToDraw(const product::Product& product,
+                                                             const product::Mate& mate,
+                                                             fits::PairChoice pairs);
 
 /** The fit of an axis-hole or prismatic mate as forces over depth, from Mate::fit and
  Mate::conditions. Widths of a prismatic mate count as diameters. Of each side:

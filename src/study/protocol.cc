@@ -10,10 +10,16 @@
 #include "base/regular_file.h"
 #include "base/units.h"
 #include "fits/iso286.h"
-#include "study/yaml_fields.h"
+#include "yaml/yaml_fields.h"
 
 namespace hvas::study {
 namespace {
+
+using yaml::Bounds;
+using yaml::ListOf;
+using yaml::NumbersOf;
+using yaml::YamlDocument;
+using yaml::YamlFields;
 
 constexpr std::size_t kMaxConditions = 26;           // Letters of the alphabet, which name them.
 constexpr std::size_t kLargestProtocol = 1'000'000;  // [bytes]: a thousand pages. A choice.

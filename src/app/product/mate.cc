@@ -22,6 +22,7 @@
 #include "app/product/product_json.h"
 #include "app/product/product_text.h"
 #include "app/product/side_document.h"
+#include "base/shell_words.h"
 #include "mates/assignments.h"
 #include "mates/user_mate.h"
 #include "product/names.h"
@@ -112,20 +113,6 @@ std::string Describe(const Product& product, const Mate& mate) {
                      product.occurrences[mate.b.occurrence.index()].path);
 }
 
-/** A word as a shell takes it. */
-std::string Quote(const std::string& word) {
-  if (word.find_first_not_of(
-          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,") ==
-      std::string::npos) {
-    return word;
-  }
-  std::string quoted = "'";
-  for (const char c : word) {
-    quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  }
-  return quoted + "'";
-}
-
 /** "housing:12", "housing:face12" or "housing:feature3". */
 Result<ordered_json> ReadSide(const Product& product, const std::string& text,
                               const std::string& option) {
@@ -183,7 +170,7 @@ Result<void> Add(const MateOptions& options) {
       opened->product.mates.size() > before ? "added"
                                             : "was inferred already, now marked as the user's:",
       mate.id.value(), Describe(opened->product, mate), opened->document.contents().path.string(),
-      Quote(options.load.file.string()), mate.key);
+      QuoteWord(options.load.file.string()), mate.key);
   return {};
 }
 
@@ -191,9 +178,9 @@ Result<void> Add(const MateOptions& options) {
 std::string DescribeUndo(const ordered_json& entry, const std::string& file) {
   const auto side = [](const ordered_json& json) {
     const bool is_face = json.contains("face");
-    return Quote(fmt::format("{}:{}{}", json["occurrence"].get<std::string>(),
-                             is_face ? "face" : "feature",
-                             json[is_face ? "face" : "feature"].get<std::uint32_t>()));
+    return QuoteWord(fmt::format("{}:{}{}", json["occurrence"].get<std::string>(),
+                                 is_face ? "face" : "feature",
+                                 json[is_face ? "face" : "feature"].get<std::uint32_t>()));
   };
   return fmt::format("hvas mate add {} --a {} --b {}{}", file, side(entry["a"]), side(entry["b"]),
                      entry.contains("fit") ? " --fit " + entry["fit"].get<std::string>() : "");
@@ -251,7 +238,7 @@ Result<void> Remove(const MateOptions& options) {
   }
   std::string told;
   for (const std::string& key : keys) {
-    const auto removed = RemoveOne(key, Quote(options.load.file.string()), &*opened);
+    const auto removed = RemoveOne(key, QuoteWord(options.load.file.string()), &*opened);
     if (!removed) {
       return Unexpected(removed.error());
     }
@@ -287,7 +274,7 @@ Result<void> Restore(const MateOptions& options) {
     }
     document->Take("removed", static_cast<std::size_t>(found - removed.begin()));
     told += fmt::format("restored {}\n  undo: hvas mate remove {} {}\n", key,
-                        Quote(options.load.file.string()), key);
+                        QuoteWord(options.load.file.string()), key);
   }
   auto written = document->Write();
   if (written) {

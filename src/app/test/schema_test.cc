@@ -287,6 +287,7 @@ class JsonRuns {
          "-o", study},
         "study_summary");
     Add({"study", "list", study}, "study_summary");
+    AddCampaign(bushing);
   }
 
   static constexpr int kAnyStatus = -1;
@@ -294,6 +295,25 @@ class JsonRuns {
   [[nodiscard]] const std::vector<JsonRun>& runs() const { return runs_; }
 
  private:
+  /** A campaign of the bushing: all shards, then one missing, which is submitted. */
+  void AddCampaign(const std::string& product) {
+    const std::string plan =
+        folder_
+            .Write("plan.yaml",
+                   "format: hvas-campaign-1\nid: press\nproducts: [" + product +
+                       "]\nfits: [{id: p6, assign: [all=H7/p6]}, {id: s6, assign: [all=H7/s6]}]\n"
+                       "seeds: {count: 100}\npress_force_n: 9000\nshard_runs: 50\n"
+                       "sensitivity: {samples: 64, resamples: 100}\n")
+            .string();
+    const std::string folder = (folder_ / "campaign").string();
+    Add({"campaign", "submit", plan, "--folder", folder, "--dry-run"}, "campaign_submission");
+    Add({"campaign", "collect", folder}, "campaign_summary", 2);
+    Add({"campaign", "run", plan, "--folder", folder}, "campaign_summary");
+    Add({"campaign", "status", folder}, "campaign_status");
+    Add({"campaign", "collect", folder}, "campaign_summary");
+    Add({"campaign", "submit", plan, "--folder", folder}, "campaign_submission");
+  }
+
   void Add(std::vector<std::string> arguments, std::string schema, int status = 0) {
     arguments.emplace_back("--json");
     runs_.push_back({std::move(arguments), std::move(schema), status});

@@ -13,7 +13,7 @@
 
 #include "base/result.h"
 
-namespace hvas::study {
+namespace hvas::yaml {
 
 /** A YAML document that is being read; JSON documents are YAML, too. It keeps the first error, with
  file, line and column. */
@@ -98,4 +98,4 @@ class YamlFields {
 /** Numbers of a sequence; none where the node is anything else. */
 [[nodiscard]] std::vector<double> NumbersOf(const YAML::Node& node);
 
-}  // namespace hvas::study
+}  // namespace hvas::yaml

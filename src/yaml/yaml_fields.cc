@@ -1,14 +1,14 @@
-#include "study/yaml_fields.h"
+#include "yaml/yaml_fields.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "mates/side_file.h"
 
-namespace hvas::study {
+namespace hvas::yaml {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 20;  // [bytes] of a protocol: a choice.
+constexpr std::size_t kMaxBytes = 1 << 20;  // [bytes], a thousand pages of text: a choice.
 
 std::string FormatMark(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
@@ -22,8 +22,7 @@ std::string Print(double x) {
 
 Result<YamlDocument> YamlDocument::Parse(const std::string& text, const std::string& file) {
   if (text.size() > kMaxBytes) {
-    return Fail(ErrorCode::kInvalid, "the file is too long for a protocol", file,
-                "shorten it to less than 1 MB");
+    return Fail(ErrorCode::kInvalid, "the file is too long", file, "shorten it to less than 1 MB");
   }
   YamlDocument document;
   document.file_ = file;
@@ -214,4 +213,4 @@ std::vector<double> NumbersOf(const YAML::Node& node) {
   return numbers;
 }
 
-}  // namespace hvas::study
+}  // namespace hvas::yaml
