@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/digest.h"
+#include "base/parallel.h"
 #include "campaign/effects.h"
 #include "campaign/row_table.h"
 #include "campaign/table_file.h"
@@ -165,24 +166,60 @@ class Collector {
       }
       table_.emplace(*std::move(table));
     }
-    for (std::int64_t shard = 0; shard < summary_.shards; ++shard) {
-      if (options_->stop.stop_requested()) {
-        return Fail(ErrorCode::kCancelled, "collecting was stopped", folder_->path().string(),
-                    "collect again: the shards stay as they are");
-      }
-      if (options_->progress) {
-        options_->progress(static_cast<double>(shard) / static_cast<double>(summary_.shards));
-      }
-      if (const auto read = ReadOne(shard); !read) {
-        return Unexpected(read.error());
-      }
+    if (const auto added = AddAll(); !added) {
+      return Unexpected(added.error());
     }
     return Finish();
   }
 
  private:
-  Result<void> ReadOne(std::int64_t shard) {
-    const auto rows = ReadShard(folder_->PathOf(shard), folder_->MakeKey(shard));
+  using Rows = Result<std::vector<RunResult>>;
+
+  /** Adds all shards in their order. While some are added, the next ones are read by other threads.
+   */
+  Result<void> AddAll() {
+    constexpr std::int64_t kBatch = 8;  // Shards in memory at a time, a few MB: a choice.
+    std::vector<Rows> batch;
+    for (std::int64_t first = -kBatch; first < summary_.shards; first += kBatch) {
+      if (options_->stop.stop_requested()) {
+        return Fail(ErrorCode::kCancelled, "collecting was stopped", folder_->path().string(),
+                    "collect again: the shards stay as they are");
+      }
+      if (options_->progress) {
+        options_->progress(static_cast<double>(std::max<std::int64_t>(0, first)) /
+                           static_cast<double>(summary_.shards));
+      }
+      const std::int64_t next = first + kBatch;
+      const auto count =
+          static_cast<std::size_t>(std::clamp<std::int64_t>(summary_.shards - next, 0, kBatch));
+      std::vector<Rows> read(count);
+      Result<void> added;
+      ForEachIndex(count + 1, 0, [&](std::size_t i) {
+        if (i == 0) {
+          added = AddBatch(first, batch);
+        } else {
+          const std::int64_t shard = next + static_cast<std::int64_t>(i) - 1;
+          read[i - 1] = ReadShard(folder_->PathOf(shard), folder_->MakeKey(shard));
+        }
+      });
+      if (!added) {
+        return added;
+      }
+      batch = std::move(read);
+    }
+    return {};
+  }
+
+  Result<void> AddBatch(std::int64_t first, const std::vector<Rows>& batch) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (const auto added = AddShard(first + static_cast<std::int64_t>(i), batch[i]); !added) {
+        return added;
+      }
+    }
+    return {};
+  }
+
+  Result<void> AddShard(std::int64_t shard, const Rows& rows) {
     if (!rows && rows.error().code == ErrorCode::kNotFound) {
       summary_.missing.push_back(shard);
       return {};
