@@ -148,6 +148,7 @@ std::string PlotToleranceYield(const Summary& summary) {
   PlotPanel panel;
   panel.x_label = "sum of the tolerances of all fits [um]";
   panel.y_label = "complete [%]";
+  panel.y = pages::PlotRange{0, 100};
   panel.x = range;
   panel.series.push_back(std::move(marks));
   figure.panels.push_back(std::move(panel));
@@ -159,6 +160,7 @@ std::string PlotSizeYield(const CellSummary& cell, std::size_t number) {
   PlotPanel panel;
   panel.x_label = "deviation of the size from nominal [um]";
   panel.y_label = "complete [%]";
+  panel.y = pages::PlotRange{0, 100};
   for (const MainEffect& effect : cell.effects) {
     const bool is_size = effect.bins.front().deviation != effect.bins.back().deviation;
     if (!is_size || panel.series.size() == kMostCurves) {
@@ -242,6 +244,7 @@ std::string MakePareto(const Plan& plan, const Summary& summary) {
   PlotPanel panel;
   panel.x_label = "cost class (rank)";
   panel.y_label = "complete [%]";
+  panel.y = pages::PlotRange{0, 100};
   for (PlotSeries* series : {&best, &others}) {
     if (!series->points.empty()) {
       panel.series.push_back(std::move(*series));
