@@ -146,12 +146,9 @@ void SetGroups(CLI::App* app) {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> kGroups{
       {"Inspect and convert CAD files", {"inspect", "mate", "export", "path", "tool"}},
       {"Assemble", {"studio", "plan", "assemble", "disassemble", "replay", "report"}},
-      {"Write instructions, rate the design", {"instructions", "dfa", "motions"}},
-      {"Calculate fits", {"fit"}},
-      {"Run products by the thousand", {"campaign"}},
-      {"Run studies with participants", {"study"}},
-      {"This machine", {"devices", "doctor"}},
-      {"This program", {"completion", "man", "licences"}}};
+      {"Work, design, tolerances and studies",
+       {"instructions", "dfa", "motions", "fit", "campaign", "study"}},
+      {"This machine and this program", {"devices", "doctor", "completion", "man", "licences"}}};
   for (const auto& [group, commands] : kGroups) {
     for (const char* command : commands) {
       app->get_subcommand(command)->group(group);

@@ -456,8 +456,8 @@ void AddPlay(CLI::App* group, int* status) {
 }  // namespace
 
 void AddCampaign(CLI::App* app, int* status) {
-  CLI::App* group = app->add_subcommand(
-      "campaign", "Run products by the thousand: which can be assembled within their tolerances");
+  CLI::App* group =
+      app->add_subcommand("campaign", "Run products by the thousand within their tolerances");
   group->require_subcommand(1);
   AddRunPlan(group, status);
   AddSubmit(group, status);

@@ -62,8 +62,8 @@ std::string AddressHelp() {
 }  // namespace
 
 void AddDevices(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand(
-      "devices", "List haptic devices: what was searched for, what was found, and problems");
+  CLI::App* command =
+      app->add_subcommand("devices", "List haptic devices: what was found, and problems");
   const auto options = std::make_shared<DevicesOptions>();
   command->add_flag("--probe", options->is_probe,
                     "Start each device that was found, without force, and stop it again");

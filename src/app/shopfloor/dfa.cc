@@ -80,7 +80,7 @@ int RunDfa(const DfaOptions& options) {
 
 void AddDfa(CLI::App* app, int* status) {
   CLI::App* command =
-      app->add_subcommand("dfa", "Rate a product's design for assembly by Boothroyd and Dewhurst");
+      app->add_subcommand("dfa", "Rate a design for assembly (Boothroyd and Dewhurst)");
   const auto options = std::make_shared<DfaOptions>();
   CLI::Option* file = command->add_option("file", options->load.file,
                                           "STEP, IGES or mesh file, or a folder of meshes");

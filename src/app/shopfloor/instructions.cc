@@ -219,7 +219,7 @@ void AddInstructions(CLI::App* app, int* status) {
                       "A plan that hvas plan has written with -o: its order is followed");
   AddBaseOption(command, &options->order.base);
   AddOrderOptions(command, options.get());
-  AddJsonFlag(command, &options->is_json, "steps or preparation");
+  AddJsonFlag(command, &options->is_json, "instructions or preparation");
   AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);
   command->footer(

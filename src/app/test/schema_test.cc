@@ -253,6 +253,14 @@ class JsonRuns {
     Add({"disassemble", bushing}, "disassemble");
     Add({"plan", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
     Add({"plan", bushing}, "plan");
+    Add({"instructions", bushing, "-o", (folder_ / "early.html").string(), "--no-cache",
+         "--time-limit", "0.001"},
+        "preparation", 1);
+    Add({"instructions", bushing, "-o", (folder_ / "bushing.glb").string()}, "instructions");
+    Add({"dfa", bushing, "--no-cache", "--time-limit", "0.001"}, "preparation", 1);
+    Add({"dfa", bushing}, "dfa");
+    Add({"motions", "M3 E2 G3 5 C3"}, "motions");
+    Add({"motions", "A1 B0 G3 A1 B0 P6 A0", "--system", "most"}, "motions");
     Add({"plan", ProductFile("gear_pump"), "--front"}, "plan");
     Add({"disassemble", bushing, "--limit", "5"}, "disassemble", 2);
     Add({"replay", record}, "replay");

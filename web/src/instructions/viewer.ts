@@ -64,7 +64,7 @@ class ProductView {
   private isWanted = false;
   private playing: { until: number; last: number } | undefined;
   private time = 0;
-  private last = 0; // When the animation ends [s].
+  private readonly last: number = 0; // When the animation ends [s].
 
   constructor(host: HTMLElement, gltf: GLTF) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
