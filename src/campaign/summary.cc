@@ -212,7 +212,7 @@ class Collector {
 
   Result<void> AddBatch(std::int64_t first, const std::vector<Rows>& batch) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (const auto added = AddShard(first + static_cast<std::int64_t>(i), batch[i]); !added) {
+      if (auto added = AddShard(first + static_cast<std::int64_t>(i), batch[i]); !added) {
         return added;
       }
     }
@@ -229,7 +229,7 @@ class Collector {
       return {};
     }
     for (const RunResult& row : *rows) {
-      if (const auto added = AddOne(row); !added) {
+      if (auto added = AddOne(row); !added) {
         return added;
       }
     }
@@ -242,7 +242,7 @@ class Collector {
     auto found = counts_.find(row.cell);
     if (found == counts_.end()) {
       found = counts_.emplace(row.cell, CellCounts()).first;
-      if (const auto prepared = PrepareCounts(row.cell, &found->second); !prepared) {
+      if (auto prepared = PrepareCounts(row.cell, &found->second); !prepared) {
         return prepared;
       }
     }

@@ -29,6 +29,8 @@ Result<void> WithName(Result<void> done, const std::filesystem::path& file) {
 
 TableFile::TableFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
+TableFile::TableFile(TableFile&& other) noexcept = default;
+
 TableFile::~TableFile() {
   if (state_) {
     state_->rows.reset();

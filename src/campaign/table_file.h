@@ -17,7 +17,7 @@ class TableFile {
   /** Errors: kNotFound where the folder is not there or not writable. */
   [[nodiscard]] static Result<TableFile> Create(const std::filesystem::path& file);
 
-  TableFile(TableFile&& other) noexcept = default;
+  TableFile(TableFile&& other) noexcept;
   TableFile& operator=(TableFile&&) = delete;
   ~TableFile();
 
