@@ -291,6 +291,7 @@ std::string MakeSobolTable(const CellSummary& cell) {
                    [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
   factors.resize(std::min(factors.size(), kMostFactors));
   std::vector<Cells> rows;
+  rows.reserve(factors.size());
   for (const SobolOfFactor* factor : factors) {
     rows.push_back({Escape(factor->factor), FormatIndex(factor->force, false),
                     FormatIndex(factor->force, true), FormatIndex(factor->complete, false),
