@@ -52,6 +52,11 @@ struct OrderPlan {
   std::vector<simulation::GapReason> reasons;
 };
 
+/** The best order of a plan: the one that the planner found where the search has none. */
+[[nodiscard]] inline const simulation::FoundOrder& BestOrder(const OrderPlan& plan) {
+  return plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
+}
+
 /** Finds orders of assembly of low cost.
  Errors: kNotFound and kInvalid for a name that does not mean one part that moves; kInvalid where
  what the user wishes contradicts what stands in the way, with the parts that wait for each other.

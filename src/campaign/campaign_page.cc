@@ -125,6 +125,15 @@ std::string MakeFailureTable(const Summary& summary) {
                    rows);
 }
 
+/** Axes of shares of complete products over something else. */
+PlotPanel MakeYieldPanel(const std::string& x_label) {
+  PlotPanel panel;
+  panel.x_label = x_label;
+  panel.y_label = "complete [%]";
+  panel.y = pages::PlotRange{0, 100};
+  return panel;
+}
+
 /** Yield over the sum of all tolerances, one mark for each combination. */
 std::string PlotToleranceYield(const Summary& summary) {
   PlotSeries marks{"combinations", PlotStyle::kDots, 0, {}};
@@ -145,10 +154,7 @@ std::string PlotToleranceYield(const Summary& summary) {
   figure.title = "Yield over tolerance";
   figure.description = "Share of complete products over the sum of the widths of all zones.";
   figure.id = "tolerance";
-  PlotPanel panel;
-  panel.x_label = "sum of the tolerances of all fits [um]";
-  panel.y_label = "complete [%]";
-  panel.y = pages::PlotRange{0, 100};
+  PlotPanel panel = MakeYieldPanel("sum of the tolerances of all fits [um]");
   panel.x = range;
   panel.series.push_back(std::move(marks));
   figure.panels.push_back(std::move(panel));
@@ -157,10 +163,7 @@ std::string PlotToleranceYield(const Summary& summary) {
 
 /** Yield over the deviations of the sizes that matter most, for one combination. */
 std::string PlotSizeYield(const CellSummary& cell, std::size_t number) {
-  PlotPanel panel;
-  panel.x_label = "deviation of the size from nominal [um]";
-  panel.y_label = "complete [%]";
-  panel.y = pages::PlotRange{0, 100};
+  PlotPanel panel = MakeYieldPanel("deviation of the size from nominal [um]");
   for (const MainEffect& effect : cell.effects) {
     const bool is_size = effect.bins.front().deviation != effect.bins.back().deviation;
     if (!is_size || panel.series.size() == kMostCurves) {
@@ -241,10 +244,7 @@ std::string MakePareto(const Plan& plan, const Summary& summary) {
       "It orders fits of one product, and nothing else."};
   figure.description = "Share of complete products over the cost class of their fits.";
   figure.id = "pareto";
-  PlotPanel panel;
-  panel.x_label = "cost class (rank)";
-  panel.y_label = "complete [%]";
-  panel.y = pages::PlotRange{0, 100};
+  PlotPanel panel = MakeYieldPanel("cost class (rank)");
   for (PlotSeries* series : {&best, &others}) {
     if (!series->points.empty()) {
       panel.series.push_back(std::move(*series));

@@ -58,14 +58,6 @@ std::vector<PictureBody> MakeBodies(const Model& model, const GapReason& reason)
   return bodies;
 }
 
-spatial::Box BoxOf(const std::vector<PictureBody>& bodies) {
-  spatial::Box box_W;
-  for (const PictureBody& body : bodies) {
-    box_W.Add(spatial::Transform(body.X_WB, body.part->box_B));
-  }
-  return box_W;
-}
-
 /** From above and below in all directions, steps of 45 degrees; the usual one where none is better.
  */
 Vec3 ChooseView(const std::vector<PictureBody>& bodies, const spatial::Box& box_W) {
@@ -97,7 +89,7 @@ std::string MakeGapPicture(const Model& model, const GapReason& reason) {
   if (bodies.empty() || reason.direction_W == Vec3::Zero()) {
     return {};
   }
-  const spatial::Box box_W = BoxOf(bodies);
+  const spatial::Box box_W = BoxAround(bodies);
   return MakePicture(
       bodies, Projection(box_W, kGapPictureWidth, kGapPictureHeight, ChooseView(bodies, box_W)));
 }

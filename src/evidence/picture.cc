@@ -331,6 +331,14 @@ std::vector<std::uint8_t> DrawPixels(const std::vector<PictureBody>& bodies,
   return pixels;
 }
 
+spatial::Box BoxAround(const std::vector<PictureBody>& bodies) {
+  spatial::Box box_W;
+  for (const PictureBody& body : bodies) {
+    box_W.Add(spatial::Transform(body.X_WB, body.part->box_B));
+  }
+  return box_W;
+}
+
 std::array<double, kMarkGroups> RateMarks(const std::vector<PictureBody>& bodies,
                                           const Projection& projection) {
   Canvas canvas(projection);

@@ -52,6 +52,9 @@ struct PictureBody {
   std::size_t mark_group{0};                ///< Its marks count in this group; below kMarkGroups.
 };
 
+/** The box in W around the boxes of bodies. */
+[[nodiscard]] spatial::Box BoxAround(const std::vector<PictureBody>& bodies);
+
 /** Parts, shaded, with edges, before nothing, as a PNG file: smooth at the edges, the same bytes
  every time. */
 [[nodiscard]] std::string MakePicture(const std::vector<PictureBody>& bodies,

@@ -1,6 +1,7 @@
 #include "shopfloor/dfa_rating.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "base/units.h"
 #include "product/fastener_name.h"
+#include "product/words.h"
 #include "shopfloor/instruction_words.h"
 #include "shopfloor/order_arrow.h"
 #include "simulation/hand_time.h"
@@ -75,8 +77,7 @@ std::vector<Coming> ListComing(const Model& model, const OrderPlan& plan) {
   for (const simulation::SequenceStep& step : plan.rules.first) {
     add({step.occurrence, step.extraction_W, step.kind == simulation::SequenceStep::Kind::kBase});
   }
-  const simulation::FoundOrder& best =
-      plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
+  const simulation::FoundOrder& best = assembly::BestOrder(plan);
   const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan.rules, best);
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const FreeMove& move = plan.rules.moves[best.moves[i]];
@@ -294,12 +295,11 @@ class SymmetryFinder {
 };
 
 /** "Lock washer", "Scheibe 8,4". */
-bool IsWasherName(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return name.find("washer") != std::string::npos || name.starts_with("scheibe") ||
-         name.find("federring") != std::string::npos;
+bool IsWasherName(const std::string& name) {
+  const std::string folded = product::FoldName(name);
+  constexpr std::array kWords{"washer", "lockwasher", "scheibe", "unterlegscheibe", "federring"};
+  return std::any_of(kWords.begin(), kWords.end(),
+                     [&folded](const char* word) { return product::HasWord(folded, word); });
 }
 
 bool IsFastener(const Model& model, OccurrenceId id) {
@@ -440,8 +440,7 @@ class AdviceFinder {
   }
 
   void TryOneDirection() {
-    const simulation::OrderCounts& counts =
-        (plan_.search.orders.empty() ? plan_.search.planned : plan_.search.orders.front()).counts;
+    const simulation::OrderCounts& counts = assembly::BestOrder(plan_).counts;
     const double seconds =
         simulation::kModSeconds * (simulation::kTurnMods * counts.turns +
                                    simulation::kOtherWayMods * counts.direction_changes);

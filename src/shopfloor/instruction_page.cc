@@ -13,6 +13,7 @@
 #include "shopfloor/most_sequence.h"
 #include "shopfloor/motion_code.h"
 #include "shopfloor/step_picture.h"
+#include "simulation/order_search.h"
 
 namespace hvas::shopfloor {
 namespace {
@@ -184,9 +185,8 @@ class PageMaker {
                   (fit.is_proposed ? words_.proposed : ""),
               &facts);
     }
-    constexpr double kMostByHand = 100;  // Order search has the same [N] (order_search.cc).
-    constexpr double kLeastTold = 5;     // Hands do not mind less [N]: a choice.
-    if (step.press > kMostByHand) {
+    constexpr double kLeastTold = 5;  // Hands do not mind less [N]: a choice.
+    if (step.press > simulation::kMostHandForce) {
       AddFact(words_.force, fmt::format(fmt::runtime(words_.press), FormatForce(step.press)),
               &facts);
     } else if (step.force > kLeastTold) {

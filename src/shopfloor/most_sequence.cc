@@ -53,7 +53,9 @@ class SequenceMaker {
         grasp_ = 3;
         break;
       case MotionPurpose::kPut:
-        place_ = motion.mods > 4 ? 6 : motion.mods > 0 ? 3 : 1;
+        place_ = motion.mods >= simulation::CalcPutMods(simulation::PutCare::kExact)  ? 6
+                 : motion.mods >= simulation::CalcPutMods(simulation::PutCare::kSome) ? 3
+                                                                                      : 1;
         break;
       case MotionPurpose::kPress:
         place_ = 6;

@@ -102,14 +102,6 @@ StepScene MakeScene(const Model& model, const WorkStep& step) {
   return scene;
 }
 
-spatial::Box BoxOf(const std::vector<PictureBody>& bodies) {
-  spatial::Box box;
-  for (const PictureBody& body : bodies) {
-    box.Add(spatial::Transform(body.X_WB, body.part->box_B));
-  }
-  return box;
-}
-
 std::vector<std::uint32_t> ListFaces(const product::Part& part) {
   std::vector<std::uint32_t> faces(part.faces.size());
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
@@ -121,8 +113,8 @@ std::vector<std::uint32_t> ListFaces(const product::Part& part) {
 /** What is in the picture: all that is there, or where the part is small against it, the part and
  its place with what is around them. */
 spatial::Box ChooseFrame(const Model& model, const WorkStep& step, const StepScene& scene) {
-  const spatial::Box all = BoxOf(scene.All());
-  spatial::Box focus = BoxOf(scene.coming);
+  const spatial::Box all = evidence::BoxAround(scene.All());
+  spatial::Box focus = evidence::BoxAround(scene.coming);
   const Pose X_UW(TurnUp(step.up_W), Vec3::Zero());
   for (const OccurrenceId id : step.coming) {
     focus.Add(spatial::Transform(X_UW * model.bodies[id.index()].X_WB_goal,

@@ -33,7 +33,7 @@ std::string EscapeScript(std::string text) {
 std::string MakeViewerElement(const simulation::Model& model, const WorkPlan& plan,
                               std::string_view glb, std::string_view script, Language language) {
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
-  double start = 0;
+  const std::vector<double> starts = ListStepStarts(plan);
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const WorkStep& step = plan.steps[i];
     if (step.kind == WorkStep::Kind::kLayAside) {
@@ -44,10 +44,9 @@ std::string MakeViewerElement(const simulation::Model& model, const WorkPlan& pl
       coming.push_back(id.value());
     }
     steps.push_back({{"title", fmt::format("{}. {}", i + 1, DescribeStep(model, step, language))},
-                     {"start", start},
-                     {"end", start + kWaySeconds},
+                     {"start", starts[i]},
+                     {"end", starts[i] + kWaySeconds},
                      {"coming", std::move(coming)}});
-    start += kStepSeconds;
   }
   const InstructionWords& words = WordsOf(language);
   const std::string data = nlohmann::ordered_json{{"steps", std::move(steps)}}.dump(

@@ -33,11 +33,22 @@ std::vector<Pose> ListPoses(const simulation::Model& model, const WorkStep& step
 
 }  // namespace
 
+std::vector<double> ListStepStarts(const WorkPlan& plan) {
+  std::vector<double> starts;
+  double start = 0;
+  for (const WorkStep& step : plan.steps) {
+    starts.push_back(start);
+    start += step.kind == WorkStep::Kind::kLayAside ? 0 : kStepSeconds;
+  }
+  return starts;
+}
+
 Result<std::string> MakeWorkAnimation(const simulation::Model& model, const WorkPlan& plan) {
   constexpr double kNever = 1e6;  // Later than any animation ends [s].
   std::map<OccurrenceId, cad::GlbMotion> motions;
-  double start = 0;
-  for (const WorkStep& step : plan.steps) {
+  const std::vector<double> starts = ListStepStarts(plan);
+  for (std::size_t s = 0; s < plan.steps.size(); ++s) {
+    const WorkStep& step = plan.steps[s];
     if (step.kind == WorkStep::Kind::kLayAside) {
       continue;
     }
@@ -47,16 +58,15 @@ Result<std::string> MakeWorkAnimation(const simulation::Model& model, const Work
       cad::GlbMotion& motion = entry->second;
       if (is_new) {
         motion.occurrence = id;
-        motion.appears_s = start;
+        motion.appears_s = starts[s];
       }
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const double share =
             poses.size() == 1 ? 0 : static_cast<double>(i) / static_cast<double>(poses.size() - 1);
-        motion.times_s.push_back(start + share * kWaySeconds);
+        motion.times_s.push_back(starts[s] + share * kWaySeconds);
         motion.X_WB.push_back(poses[i]);
       }
     }
-    start += kStepSeconds;
   }
   for (const OccurrenceId id : plan.left_out) {
     const Pose& X_WB = model.bodies[id.index()].X_WB_goal;

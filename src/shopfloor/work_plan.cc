@@ -56,7 +56,7 @@ class WorkPlanMaker {
   WorkPlanMaker(const Model& model, const OrderPlan& plan)
       : model_(model),
         plan_(plan),
-        best_(plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front()),
+        best_(assembly::BestOrder(plan)),
         arrows_(ListArrows(plan.rules)) {}
 
   [[nodiscard]] WorkPlan Make() {

@@ -23,10 +23,7 @@ using product::OccurrenceId;
 // A choice.
 constexpr double kBelow = -0.1;
 constexpr double kSameWay = 0.985;  // Cosine: 10 degrees, which a hand does not notice. A choice.
-// What a hand pushes or carries at most; the rest is for a press, a mallet or a hoist [N]. A
-// choice.
-constexpr double kMostHandForce = 100;
-constexpr double kSameCost = 1e-9;     // Sums in another order are rounded otherwise.
+constexpr double kSameCost = 1e-9;  // Sums in another order are rounded otherwise.
 constexpr std::size_t kWidest = 4096;  // Orders at once: some 100 MB for a product of 500 parts.
 constexpr std::size_t kWidening = 4;   // A round is so much wider than the last: a choice.
 

@@ -15,6 +15,11 @@
 
 namespace hvas::simulation {
 
+/** What a hand pushes or carries at most; the rest is for a press, a mallet or a hoist [N]. A
+ * choice.
+ */
+inline constexpr double kMostHandForce = 100;
+
 /** What makes an order worse: how often each happens in it, and what it asks of the hand. */
 struct OrderCounts {
   int turns{0};              ///< The product is turned, because a part would come in from below.

@@ -19,6 +19,7 @@
 namespace hvas::app {
 namespace {
 
+using assembly::BestOrder;
 using pages::Escape;
 using pages::MakeTile;
 using product::OccurrenceId;
@@ -88,10 +89,6 @@ nlohmann::ordered_json ToJson(const PlanReport& report, const FoundOrder& order)
   return json;
 }
 
-const FoundOrder& BestOf(const assembly::OrderPlan& plan) {
-  return plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
-}
-
 /** What has to be held after a move of the best order; none where it was not looked at. */
 std::optional<std::vector<OccurrenceId>> HoldsAfter(const assembly::OrderPlan& plan,
                                                     std::size_t place) {
@@ -103,7 +100,7 @@ std::optional<std::vector<OccurrenceId>> HoldsAfter(const assembly::OrderPlan& p
 
 nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
   const assembly::OrderPlan& plan = *report.plan;
-  const FoundOrder& best = BestOf(plan);
+  const FoundOrder& best = BestOrder(plan);
   const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan.rules, best);
   nlohmann::ordered_json moves = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
@@ -231,7 +228,7 @@ struct MoveRow {
 std::vector<MoveRow> ListRows(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
-  const FoundOrder& best = BestOf(plan);
+  const FoundOrder& best = BestOrder(plan);
   const std::vector<OrderArrow> arrows = ListArrows(plan.rules);
   std::vector<MoveRow> rows;
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
@@ -368,7 +365,7 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
     }
   }
   json["followed"] =
-      MakeFollowedPlan(*model.product, simulation::ListSteps(plan.rules, BestOf(plan)));
+      MakeFollowedPlan(*model.product, simulation::ListSteps(plan.rules, BestOrder(plan)));
   return json;
 }
 
@@ -407,7 +404,7 @@ void PrintPlanTable(const PlanReport& report) {
   if (!fixture.empty()) {
     fmt::print("{}", Wrap(fixture, 0));
   }
-  PrintOrder("Best order: ", BestOf(plan), DescribeHolds(plan, 0));
+  PrintOrder("Best order: ", BestOrder(plan), DescribeHolds(plan, 0));
   PrintOrder("As first found: ", plan.search.planned, "");
   for (std::size_t i = 1; i < plan.search.orders.size(); ++i) {
     PrintOrder(fmt::format("Alternative {}: ", i), plan.search.orders[i], DescribeHolds(plan, i));
@@ -421,7 +418,7 @@ void PrintPlanTable(const PlanReport& report) {
 std::string MakePlanPage(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
-  const FoundOrder& best = BestOf(plan);
+  const FoundOrder& best = BestOrder(plan);
   std::string body = fmt::format(
       "<h1>{}: plan of the assembly</h1>\n<ul class=\"tiles\">{}{}{}{}{}{}</ul>\n",
       Escape(model.product->name), MakeTile("moves", fmt::format("{}", best.moves.size())),

@@ -212,6 +212,12 @@ std::optional<double> CsvTable::GetNumber(std::size_t row, std::string_view colu
   return is_number ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
+std::size_t CsvTable::AddRow() {
+  rows_.emplace_back(columns_.size());
+  lines_.push_back(rows_.size() + 1);  // The first line has the columns.
+  return rows_.size() - 1;
+}
+
 void CsvTable::Set(std::size_t row, std::string_view column, std::string value) {
   const std::size_t index = Find(column);
   if (index == columns_.size()) {

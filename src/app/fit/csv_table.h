@@ -41,6 +41,9 @@ class CsvTable {
   /** A number. None where the cell is empty; NaN where it is no number. */
   [[nodiscard]] std::optional<double> GetNumber(std::size_t row, std::string_view column) const;
 
+  /** Adds a row of empty cells. @returns its number. */
+  std::size_t AddRow();
+
   /** Sets a cell, adding the column if it is new. */
   void Set(std::size_t row, std::string_view column, std::string value);
 

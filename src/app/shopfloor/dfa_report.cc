@@ -99,29 +99,26 @@ Result<DfaSheet> ReadDfaSheet(const std::filesystem::path& file) {
 }
 
 std::string MakeDfaTable(const DfaReport& report) {
-  std::string text =
-      "part,count,handling_code,handling_s,insertion_code,insertion_s,operation_s,min_parts,"
-      "chosen_by\n";
-  const auto quoted = [](const std::string& cell) {
-    std::string out = "\"";
-    for (const char c : cell) {
-      out += c == '"' ? "\"\"" : std::string(1, c);
-    }
-    return out + "\"";
-  };
+  CsvTable table;
   for (std::size_t i = 0; i < report.sheet->rows.size(); ++i) {
     const DfaRow& row = report.sheet->rows[i];
     const DfaTimes& times = report.sheet->times[i];
-    std::string why;
+    table.AddRow();
+    table.Set(i, "part", row.part);
+    table.Set(i, "count", std::to_string(row.count));
+    table.Set(i, "handling_code", row.handling);
+    table.Set(i, "handling_s", fmt::format("{}", times.handling.seconds));
+    table.Set(i, "insertion_code", row.insertion);
+    table.Set(i, "insertion_s", fmt::format("{}", times.insertion.seconds));
+    table.Set(i, "operation_s", fmt::format("{:.2f}", times.seconds));
+    table.Set(i, "min_parts", std::to_string(row.min_parts));
     if (report.rating != nullptr) {
       const shopfloor::RatedParts& rated = report.rating->groups[i];
-      why = rated.handled_as + "; " + rated.inserted_as + "; " + DescribeNeed(rated.need);
+      table.Set(i, "chosen_by",
+                rated.handled_as + "; " + rated.inserted_as + "; " + DescribeNeed(rated.need));
     }
-    text += fmt::format("{},{},{},{},{},{},{:.2f},{},{}\n", quoted(row.part), row.count,
-                        row.handling, times.handling.seconds, row.insertion,
-                        times.insertion.seconds, times.seconds, row.min_parts, quoted(why));
   }
-  return text;
+  return table.ToText();
 }
 
 nlohmann::ordered_json MakeDfaJson(const DfaReport& report) {
