@@ -9,6 +9,7 @@ import {
   distance,
   fetchScene,
   makeFolder,
+  nextFrame,
   poseOf,
   runProgram,
   shareBrowser,
@@ -56,17 +57,31 @@ async function turnView(page, dy) {
   await waitForView(page);
 }
 
-/** Turns the view, first from below and then from above, until one sees a face; clicks it once the view rests. */
-async function findAndClickFace(page, occurrence, face) {
+/** Turns the view, first from below and then from above, until one sees a face of a part at rest; clicks it.
+ @param moving  The part that a constraint may still be moving: it could hide the face a moment later. */
+async function findAndClickFace(page, occurrence, face, moving) {
   const find = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
+  await waitForRest(page, moving);
+  await waitForView(page);
   for (const dy of [...Array(6).fill(-60), ...Array(12).fill(60)]) {
     if ((await find()) !== null) {
       break;
     }
     await turnView(page, dy);
   }
-  await waitForView(page);
   await clickFace(page, occurrence, face);
+}
+
+/** The scene once a trial has put all other parts in their places, which its first tick does, and the part that is left. */
+async function findTrialPart(page) {
+  for (;;) {
+    const scene = await fetchScene(page);
+    const loose = scene.occurrences.map((o, k) => ({ ...o, occurrence: k })).filter(({ placement }) => placement === "loose");
+    if (loose.length === 1) {
+      return { scene, ...loose[0] };
+    }
+    await nextFrame(page);
+  }
 }
 
 /** Drags a part in the plane of the screen until it looks as if it were at p_W, or until `isThere`. */
@@ -95,9 +110,9 @@ async function pickConstraints(person, scene, occurrence) {
   assert.equal(mates.length, 2);
   await person.getByText("Click a surface of the marked part.").waitFor();
   for (const [k, { a, b, faces_a: facesA, faces_b: facesB }] of mates.entries()) {
-    await findAndClickFace(person, b, facesB[0]);
+    await findAndClickFace(person, b, facesB[0], occurrence);
     await person.getByText("Now click the surface that it belongs to.").waitFor();
-    await findAndClickFace(person, a, facesA[0]);
+    await findAndClickFace(person, a, facesA[0], occurrence);
     await person.getByText(k === 0 ? "Constraints left: 1" : "Trial 2").first().waitFor();
   }
 }
@@ -148,8 +163,7 @@ describe("a session with a person", () => {
 
       await press(person, "study-ready");
       await waitForPicture(person);
-      const scene = await fetchScene(person);
-      const { occurrence, goal } = scene.occurrences.map((o, k) => ({ ...o, occurrence: k })).find(({ placement }) => placement === "loose");
+      const { scene, occurrence, goal } = await findTrialPart(person);
       const before = await poseOf(person, occurrence);
       await takeByMouse(person, occurrence);
       await person.mouse.move(700, 400, { steps: 10 });
