@@ -385,7 +385,7 @@ void PrintPlanTable(const PlanReport& report) {
           row.arrows.size() > 1 ? fmt::format("; and before {} more", row.arrows.size() - 1) : "";
     }
     if (!row.aside.empty()) {
-      below = "with " + row.aside + (below.empty() ? "" : "; " + below);
+      below = fmt::format("with {}{}{}", row.aside, below.empty() ? "" : "; ", below);
     }
     if (!row.holds.empty()) {
       below += (below.empty() ? "hold " : "; hold ") + row.holds;
