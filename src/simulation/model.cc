@@ -26,6 +26,7 @@
 #include "simulation/mate_way.h"
 #include "simulation/model_limits.h"
 #include "simulation/shapes.h"
+#include "simulation/table_layout.h"
 #include "simulation/thread_faces.h"
 
 namespace hvas::simulation {
@@ -33,10 +34,6 @@ namespace {
 
 using product::OccurrenceId;
 using product::Product;
-
-constexpr double kTableGap = 10e-3;     // [m] between parts on the table
-constexpr double kTransferGap = 30e-3;  // [m] between a carried part and the product
-constexpr double kSettleTime = 3.0;     // [s]; parts that fall 30 mm lie still sooner: a choice.
 
 /** A surface without a solid weighs nothing in the file; in the hand it needs some inertia. */
 dynamics::MassProperties MakeMass(const product::Part& part) {
@@ -48,43 +45,6 @@ dynamics::MassProperties MakeMass(const product::Part& part) {
   const double radius = 0.25 * part.box_B.size().norm();
   const double least = std::max(kLeastMass, mass.mass);
   return {least, part.box_B.centre(), 0.4 * least * radius * radius * Mat3::Identity()};
-}
-
-spatial::Box DrawnBox(const Product& product, OccurrenceId id) {
-  return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
-}
-
-/** Gives every subassembly that is put together first its place on the shelf: beside the product,
- on the other side than the table's parts. Returns the largest radius of what is carried. */
-double PlaceOnShelf(Model* model) {
-  const Product& product = *model->product;
-  double reach = 0;
-  for (const product::Part& part : product.parts) {
-    reach = std::max(reach, 0.5 * part.box_B.size().norm());
-  }
-  std::map<OccurrenceId, spatial::Box> boxes;  // by the part that leads
-  double widest = 0;
-  for (const SequenceStep& step : model->sequence.steps) {
-    if (step.kind == SequenceStep::Kind::kPark) {
-      spatial::Box& box = boxes[step.occurrence];
-      box = DrawnBox(product, step.occurrence);
-      for (const OccurrenceId member : step.members) {
-        box.Add(DrawnBox(product, member));
-      }
-      widest = std::max(widest, box.size().norm());
-    }
-  }
-  reach = std::max(reach, 0.5 * widest);
-  const double radius = 0.5 * product.box_W.size().norm() + reach + kTransferGap;
-  double place = -0.5 * (widest + kTableGap) * static_cast<double>(boxes.size() - 1);
-  for (SequenceStep& step : model->sequence.steps) {
-    if (step.kind == SequenceStep::Kind::kPark) {
-      const Vec3 shelf = product.box_W.centre() + Vec3(place, -(radius + widest + kTableGap), 0);
-      step.offset_W = shelf - boxes[step.occurrence].centre();
-      place += widest + kTableGap;
-    }
-  }
-  return reach;
 }
 
 /** Draws the actual sizes of the fits. The way of a prismatic mate is that of the step that joins
@@ -140,72 +100,6 @@ void RelieveWays(const std::stop_token& stop, Model* model, Diagnostics* diagnos
     model->sequence.reliefs = extraction.ListReliefs();
     GiveActualFaces(model, diagnostics);
   }
-}
-
-/** Lays the loose parts out in rows on the table, as drawn, and lets them come to rest. */
-Result<void> LayOut(Model* model) {
-  const Product& product = *model->product;
-  const double reach = PlaceOnShelf(model);
-  model->centre_W = product.box_W.centre();
-  const double radius = 0.5 * product.box_W.size().norm();
-  model->transfer_radius = radius + reach + kTransferGap;
-  model->table_z = model->centre_W.z() - model->transfer_radius - reach - kTransferGap;
-  std::vector<std::size_t> order;
-  double area = 0;
-  const auto cell = [&](std::size_t i) {
-    return model->bodies[i].shape->box_B().size().norm() + kTableGap;
-  };
-  const auto& fixtures = model->accessories.fixtures;
-  const std::size_t standing = fixtures.size() - model->accessories.bench_count;
-  for (std::size_t i = 0; i < model->bodies.size(); ++i) {
-    const auto end = fixtures.begin() + static_cast<std::ptrdiff_t>(standing);
-    if (std::find(fixtures.begin(), end, OccurrenceId(i)) == end) {
-      order.push_back(i);
-      area += cell(i) * cell(i);
-    }
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t x, std::size_t y) { return cell(x) > cell(y); });
-  const double width = std::max(1.5 * std::sqrt(area), cell(order.front()));
-  const double left = model->centre_W.x() - 0.5 * width;
-  double x = left;
-  double y = model->centre_W.y() + model->transfer_radius + reach;
-  double row_depth = 0;
-  dynamics::World world(TableOptions(*model));
-  std::vector<dynamics::BodyId> ids;
-  std::vector<std::size_t> members;
-  for (const std::size_t i : order) {
-    Body& body = model->bodies[i];
-    const double size = cell(i);
-    if (x + size > left + width) {
-      x = left;
-      y += row_depth;
-      row_depth = 0;
-    }
-    row_depth = std::max(row_depth, size);
-    const spatial::Box box =
-        spatial::Transform(spatial::Pose(body.X_WB_goal.q(), Vec3::Zero()), body.shape->box_B());
-    const Vec3 place(x + 0.5 * size, y + 0.5 * size, model->table_z + 1e-3);
-    const Vec3 bottom(box.centre().x(), box.centre().y(), box.low.z());
-    body.X_WB_start = spatial::Pose(body.X_WB_goal.q(), place - bottom);
-    x += size;
-    const auto id =
-        world.AddBody(product.part_of(body.occurrence).mesh.vertices, body.mass, body.X_WB_start);
-    if (!id) {
-      return Unexpected(id.error());
-    }
-    ids.push_back(*id);
-    members.push_back(i);
-  }
-  (void)world.Settle(kSettleTime);
-  for (std::size_t k = 0; k < ids.size(); ++k) {
-    model->bodies[members[k]].X_WB_start = world.pose(ids[k]);
-  }
-  for (std::size_t k = standing; k < fixtures.size(); ++k) {
-    Body& body = model->bodies[fixtures[k].index()];
-    body.X_WB_goal = body.X_WB_start;
-  }
-  return {};
 }
 
 /** Says which bodies are tools and fixtures, and finds the forms by which tools turn fasteners. */
@@ -328,12 +222,6 @@ dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& ste
     sum.mass = mass;
   }
   return sum;
-}
-
-dynamics::WorldOptions TableOptions(const Model& model) {
-  dynamics::WorldOptions options;
-  options.table_z = model.table_z;
-  return options;
 }
 
 namespace {
@@ -531,7 +419,7 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
     }
   }
   report("layout", 0);
-  if (const auto laid_out = LayOut(model.get()); !laid_out) {
+  if (const auto laid_out = LayOutParts(model.get()); !laid_out) {
     return Unexpected(laid_out.error());
   }
   if (const auto ordered = PutInOrder(options, model.get()); !ordered) {

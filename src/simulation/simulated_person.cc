@@ -171,7 +171,14 @@ Vec3 SimulatedPerson::CalcLifted() const noexcept {
 }
 
 Vec3 SimulatedPerson::CalcPointAside(double distance) const noexcept {
-  return task_.centre_W + distance * (CalcLifted() - task_.centre_W).normalized();
+  const Vec3 from_centre = CalcLifted() - task_.centre_W;
+  const double aside = std::hypot(from_centre.x(), from_centre.y());
+  if (from_centre.z() >= kLeastRiseAside * aside) {
+    return task_.centre_W + distance * from_centre.normalized();
+  }
+  // Straight up to it from the table never comes nearer to the centre than this.
+  const Vec3 out(from_centre.x() / aside, from_centre.y() / aside, kLeastRiseAside);
+  return task_.centre_W + distance * out;
 }
 
 spatial::Pose SimulatedPerson::WayAt(double travel) const noexcept {

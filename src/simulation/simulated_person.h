@@ -10,6 +10,11 @@
 
 namespace hvas::simulation {
 
+/** A person who carries a part around the product begins at least this high above its centre, by
+ the distance from there: what comes from the side is then carried over the product, and not
+ through the table. A choice. */
+inline constexpr double kLeastRiseAside = 0.3;
+
 /** What the person has been told about one part: where it lies, where it should go and which way
  in; or, for a part to be taken out, where it is, which way out and where to put it down. */
 struct PersonTask {

@@ -119,13 +119,14 @@ void ReportDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagno
   if (part.solid_count == 0) {
     diagnostics->Warn(
         "no-solid", part.name,
-        fmt::format("the mesh is not closed ({} open edges); it has no mass", defects.open_edges),
-        "close the mesh, or export the part as a solid body");
+        fmt::format("this mesh is not closed ({} open edges), so it has no volume and no mass",
+                    defects.open_edges),
+        "repair the mesh, or export STEP");
   } else if (open_shells > 0) {
     diagnostics->Warn("open-mesh", part.name,
-                      fmt::format("{} of {} pieces of the mesh are not closed; they have no mass",
+                      fmt::format("{} of {} pieces of this mesh are not closed, so they have no volume",
                                   open_shells, mesh.shells.size()),
-                      "close the mesh, or export the part as a solid body");
+                      "repair the mesh, or export STEP");
   }
   if (part.solid_count > 1) {
     diagnostics->Note("many-solids", part.name,

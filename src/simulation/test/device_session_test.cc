@@ -185,7 +185,7 @@ TEST(DeviceSessionTest, AFaultWhileAPartIsHeldTakesTheForceAwayAndItComesBack) {
     }
     SCOPED_TRACE(device::ToString(fault));
     DeviceSession session(PegInBlockModel(), "touch_x");
-    AfterFault sink(&session.run, &session.emulator.device(), fault, 2'000'000'000);
+    AfterFault sink(&session.run, &session.emulator.device(), fault, 1'800'000'000);
     Execution execution = session.MakeExecution(60);
     execution.sink = &sink;
     FlightRecorder flight(1000);

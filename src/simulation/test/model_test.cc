@@ -115,9 +115,20 @@ TEST(CompileTest, PartsLieApartOnTheTableBelowTheProduct) {
     boxes.push_back(box);
     // Neither in the product nor where parts are carried around it.
     EXPECT_GT((box.centre() - model.centre_W).norm(), model.transfer_radius);
-    EXPECT_LT(box.high.z(), model.product->box_W.low.z());
+    EXPECT_FALSE(box.Overlaps(model.product->box_W));
   }
   EXPECT_FALSE(boxes[0].Overlaps(boxes[1]));
+}
+
+TEST(CompileTest, TheTableIsAsNearAsTheWaysOfThePartsAllow) {
+  const auto height_below = [](const Model& model) {
+    return (model.product->box_W.low.z() - model.table_z) / model.product->box_W.size().norm();
+  };
+  // The peg comes from above: nothing but the fixture is between product and table.
+  EXPECT_LT(height_below(*testing::PegInBlockModel()), 0.5);
+  for (const SequenceStep& step : testing::PegInBlockModel()->sequence.steps) {
+    EXPECT_GT(step.extraction_W.z(), 0.99);
+  }
 }
 
 TEST(CompileTest, MatesAreListedForBothOfTheirParts) {

@@ -87,6 +87,7 @@ const editActions: Action[] = [
     "action.find",
     () => {
       ui.panels.model.value = true;
+      ui.phoneSheet.value = "parts";
       ui.findRequest.value += 1;
     },
     { keys: ["/"], isEnabled: hasScene },
@@ -103,6 +104,7 @@ const viewActions: Action[] = [
   standardView("bottom", "action.viewBottom", "6"),
   standardView("iso", "action.viewIso", "7"),
   action("views", "action.views", () => (ui.overlay.value = { kind: "views" }), { isEnabled: hasScene }),
+  toggle("follow-steps", "action.followSteps", view.followsSteps),
   toggle("ortho", "action.ortho", view.isOrthographic, { keys: ["p"] }),
   action("hide", "action.hide", () => setHidden(view, chosen(), true), {
     keys: ["h"],
@@ -134,7 +136,7 @@ const viewActions: Action[] = [
   action("apart", "action.apart", toggleApart, { keys: ["j"], isEnabled: hasScene, isOn: () => view.apart.value !== null }),
   toggle("edges", "action.edges", view.showsEdges, { startsGroup: true }),
   toggle("grid", "action.grid", view.showsGrid),
-  action("workshop", "action.workshop", toggleWorkshop, { keys: ["u"], isOn: () => view.showsWorkshop.value }),
+  action("workshop", "action.workshop", toggleWorkshop, { keys: ["u"], isOn: () => view.drawsWorkshop.value }),
   toggle("forces-shown", "action.forcesShown", view.showsForces),
   toggle("force-scale", "action.forceScale", view.locksForceScale),
   action("quality", "action.quality", toggleQuality, { isOn: () => view.isFine.value, startsGroup: true }),
@@ -238,8 +240,12 @@ function toggleApart(): void {
 }
 
 function toggleWorkshop(): void {
-  view.showsWorkshop.value = !view.showsWorkshop.value;
-  if (view.showsWorkshop.value && !view.isFine.value) {
+  if (view.drawsWorkshop.value) {
+    view.showsWorkshop.value = false;
+    return;
+  }
+  view.showsWorkshop.value = view.editsBench.value = true;
+  if (!view.drawsWorkshop.value) {
     // Whoever asks for it gets it, on a slow machine as well.
     view.quality.value = "high";
   }

@@ -10,7 +10,9 @@ import { Inspector } from "./inspector";
 import { Lazy } from "./lazy";
 import { ModelTree } from "./model_tree";
 import { EmptyState, LoadingDrawer } from "./opening";
+import { PhoneBar, PhoneHeader, PhoneSheet } from "./phone";
 import { Plots } from "./plots";
+import { isPhone } from "./screen";
 import { sizeOf, Splitter } from "./splitter";
 import { StatusBar } from "./status_bar";
 import { Timeline } from "./timeline";
@@ -58,7 +60,8 @@ export function App() {
   const hasScene = store.scene.value !== null;
   const isStudy = studio.study.experimenter.value !== null;
   const { model, inspector, plots } = ui.panels;
-  const shows = (flag: { value: boolean }) => hasScene && flag.value && !(isStudy && flag !== plots);
+  const isOnPhone = isPhone.value && !isStudy;
+  const shows = (flag: { value: boolean }) => hasScene && !isOnPhone && flag.value && !(isStudy && flag !== plots);
   return (
     <div
       ref={root}
@@ -67,9 +70,9 @@ export function App() {
         "--inspector-width": sizeOf("inspector"),
         "--plots-height": sizeOf("plots"),
       }}
-      class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""} ${isStudy ? "has-study" : ""}`}
+      class={`app ${shows(model) ? "has-model" : ""} ${shows(inspector) ? "has-inspector" : ""} ${shows(plots) ? "has-plots" : ""} ${isStudy ? "has-study" : ""} ${isOnPhone ? "is-phone" : ""}`}
     >
-      <Header />
+      {isOnPhone ? <PhoneHeader /> : <Header />}
       <main class="workspace">
         {shows(model) ? (
           <aside class="model-panel" aria-label={t("action.panelModel")}>
@@ -96,13 +99,18 @@ export function App() {
           {shows(plots) ? <Splitter name="plots" /> : null}
         </div>
         {shows(inspector) ? <Inspector /> : null}
+        {isOnPhone ? <PhoneSheet /> : null}
         {isStudy ? <Lazy load={() => import("./study/experimenter")} /> : null}
       </main>
       {shows(plots) ? <Plots /> : null}
-      <div class="foot">
-        {isStudy ? null : <Timeline />}
-        <StatusBar />
-      </div>
+      {isOnPhone ? (
+        <PhoneBar />
+      ) : (
+        <div class="foot">
+          {isStudy ? null : <Timeline />}
+          <StatusBar />
+        </div>
+      )}
       <Overlays />
       <LiveRegion />
     </div>

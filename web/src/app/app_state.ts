@@ -25,6 +25,12 @@ export type Overlay =
   | { kind: "share" }
   | { kind: "menu"; x: number; y: number; occurrence: number | null };
 
+/** What the one sheet of a phone shows. */
+export type PhoneSheetName = "steps" | "parts" | "plots";
+
+/** Which events are listed. */
+export type EventFilter = "all" | "parts" | "alarms";
+
 export type BottomTab = "events" | "runs" | "rates" | "compare";
 /** A view under a name; of a product of this name only. */
 export interface SavedView {
@@ -37,6 +43,11 @@ export interface SavedView {
 export const ui = {
   overlay: signal<Overlay | null>(null),
   panels: { model: signal(true), inspector: signal(true), plots: signal(true) },
+  /** Whoever has read what the assembly came to closes it. */
+  isFinishClosed: signal(false),
+  eventFilter: signal<EventFilter>("all"),
+  /** On a phone; null: the view is seen as a whole. */
+  phoneSheet: signal<PhoneSheetName | null>(null),
   bottomTab: signal<BottomTab>("events"),
   /** Of the panels, where the user has dragged their rims; 0: as the page has them [px]. */
   sizes: { model: signal(0), inspector: signal(0), plots: signal(0) },

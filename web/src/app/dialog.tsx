@@ -5,6 +5,8 @@ import { useEffect, useRef } from "preact/hooks";
 import { store } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { ForcesButton } from "./forces_button";
+import { isPhone } from "./screen";
 
 interface DialogProps {
   title: string;
@@ -56,6 +58,7 @@ export function DialogHead({ title, onClose }: { title: string; onClose: () => v
   return (
     <header class="dialog-head">
       <h2>{title}</h2>
+      {isPhone.value ? <ForcesButton /> : null}
       <button type="button" class="icon-button" aria-label={t("dialog.close")} onClick={onClose}>
         <Icon name="close" />
       </button>

@@ -1,6 +1,6 @@
 import type { Told } from "../model/event_log";
 import type { HoldState } from "../protocol/messages";
-import { store } from "./app_state";
+import { store, ui, type EventFilter } from "./app_state";
 import { duration, figures, language, number, t } from "./i18n";
 import { seek } from "./time_source";
 
@@ -20,25 +20,61 @@ export function logText(entry: Told): string {
     case "recording":
       return t(p["on"] ? "log.recordingOn" : "log.recordingOff", p);
     case "state":
-      return t("log.state", { part: p["part"] ?? "", state: t(`state.${p["state"] as HoldState}`) });
+      return t(`log.state.${p["state"] as HoldState}`, { part: p["part"] ?? "" });
     default:
       return t(`log.${entry.kind}`, p);
   }
 }
 
-/** Limits of the force come in the course of the work, by the dozen: how often each of them. */
+/** Limits of the force come in the course of the work, by the dozen. They are no events for who assembles: how often
+ there was one, and on demand each of them. */
 function Limits() {
   const limits = [...store.limits.value];
+  const count = limits.reduce((sum, [, times]) => sum + times, 0);
   return limits.length === 0 ? null : (
-    <p class="limit-counts" data-testid="limits">
-      {t("log.limits", { text: limits.map(([reason, count]) => `${reason} ${number(count)}×`).join(" · ") })}
-    </p>
+    <details class="limit-counts" data-testid="limits">
+      <summary>{t("log.limits", { n: number(count) })}</summary>
+      <ul>
+        {limits.map(([reason, times]) => (
+          <li key={reason}>
+            {reason} {number(times)}×
+          </li>
+        ))}
+      </ul>
+    </details>
+  );
+}
+
+const kParts: readonly Told["kind"][] = ["taken", "dropped", "state"];
+const kAlarms: readonly Told["kind"][] = ["safety", "forces", "failed"];
+const kFilters: Record<EventFilter, (kind: Told["kind"]) => boolean> = {
+  all: () => true,
+  parts: (kind) => kParts.includes(kind),
+  alarms: (kind) => kAlarms.includes(kind),
+};
+
+function Filter() {
+  return (
+    <select
+      class="event-filter"
+      aria-label={t("log.filter")}
+      data-testid="event-filter"
+      value={ui.eventFilter.value}
+      onChange={(event) => (ui.eventFilter.value = event.currentTarget.value as EventFilter)}
+    >
+      {(Object.keys(kFilters) as EventFilter[]).map((name) => (
+        <option key={name} value={name}>
+          {t(`log.filter.${name}`)}
+        </option>
+      ))}
+    </select>
   );
 }
 
 export function EventList() {
   return (
     <>
+      {store.log.value.length > 0 ? <Filter /> : null}
       <Limits />
       <Events />
     </>
@@ -46,7 +82,7 @@ export function EventList() {
 }
 
 function Events() {
-  const log = store.log.value;
+  const log = store.log.value.filter(({ kind }) => kFilters[ui.eventFilter.value](kind));
   if (log.length === 0) {
     return <p class="quiet">{t("log.empty")}</p>;
   }

@@ -1,11 +1,10 @@
 import { ActionButton } from "./action_button";
 import { findAction, runAction } from "./actions";
-import { canSteer, store, studio, ui } from "./app_state";
+import { store, ui } from "./app_state";
 import { deviceName } from "./device_name";
-import { forcesOff } from "./hand_actions";
+import { ForcesButton } from "./forces_button";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
-import { shownKey } from "./key";
 import { MenuBar } from "./menu";
 
 function Chips() {
@@ -30,27 +29,6 @@ function Chips() {
       </span>
       <span class="chip is-good chip-physics">{t("header.physics", { hz: number(status.physics_hz, 0) })}</span>
     </div>
-  );
-}
-
-export function ForcesButton() {
-  const isOff = store.forcesOff.value;
-  return isOff ? (
-    <button
-      type="button"
-      class="forces-button is-off"
-      data-testid="forces-on"
-      disabled={!canSteer()}
-      onClick={() => void studio.command({ command: "forces", off: false })}
-    >
-      <Icon name="play" />
-      {t("action.forcesOn")}
-    </button>
-  ) : (
-    <button type="button" class="forces-button" data-testid="forces-off" title={shownKey(findAction("forces-off")) ?? undefined} onClick={forcesOff}>
-      <Icon name="stop" />
-      {t("action.forcesOff")}
-    </button>
   );
 }
 
@@ -86,6 +64,7 @@ export function Header() {
       <button
         type="button"
         class="vr-button"
+        aria-label={findAction("enter-vr").label()}
         data-testid="enter-vr"
         disabled={scene === null}
         onClick={() => runAction(findAction("enter-vr"))}

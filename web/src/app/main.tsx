@@ -8,6 +8,7 @@ import { listenToKeys } from "./keyboard";
 import { keepPreferences } from "./preferences";
 import { rememberParticipant, Root } from "./root";
 import { showShared } from "./shared_link";
+import { followScreen } from "./screen";
 import { startSounds } from "./sounds";
 import { exposeHooks } from "./test_hooks";
 import { followTheme } from "./theme";
@@ -16,6 +17,7 @@ import "./styles/layout.css";
 import "./styles/panels.css";
 import "./styles/view.css";
 import "./styles/time.css";
+import "./styles/phone.css";
 
 const { token, rest } = takeToken(location.hash);
 if (token !== null) {
@@ -27,6 +29,7 @@ const moment = decodeMoment(rest);
 keepPreferences();
 followTraces();
 followTheme();
+followScreen();
 effect(() => {
   document.documentElement.lang = language.value;
   document.title = store.study.value?.title || t("app.title");

@@ -1,11 +1,31 @@
 /** What the assembly came to, once every part is in its place. */
 
+import type { ComponentChildren } from "preact";
+import { useEffect } from "preact/hooks";
 import { summarizeRuns } from "../model/summary";
-import { store } from "./app_state";
+import { store, ui } from "./app_state";
 import { findAction, runAction } from "./actions";
+import { Icon } from "./icons";
 import { duration, figures, number, t } from "./i18n";
 
+/** Before everything else, until it is closed; then it is in the inspector. */
+export function FinishCard() {
+  const isDone = store.isDone.value;
+  useEffect(() => void (ui.isFinishClosed.value = false), [isDone]);
+  return ui.isFinishClosed.value || store.study.value !== null ? null : (
+    <Summary className="finish-card">
+      <button type="button" class="icon-button" aria-label={t("dialog.close")} data-testid="finish-close" onClick={() => (ui.isFinishClosed.value = true)}>
+        <Icon name="close" />
+      </button>
+    </Summary>
+  );
+}
+
 export function SummaryCard() {
+  return ui.isFinishClosed.value ? <Summary className="card-group" /> : null;
+}
+
+function Summary({ className, children }: { className: string; children?: ComponentChildren }) {
   const runs = store.runs.value;
   if (!store.isDone.value || runs.length === 0) {
     return null;
@@ -22,8 +42,11 @@ export function SummaryCard() {
     [t("summary.slowest"), sum.slowest === null ? "–" : `${sum.slowest.name}, ${duration(sum.slowest.metrics.time_s)}`],
   ];
   return (
-    <section class="card-group" aria-labelledby="summary-title" role="status">
-      <h2 id="summary-title">{t("summary.title")}</h2>
+    <section class={className} aria-labelledby="summary-title" role="status">
+      <div class="finish-head">
+        <h2 id="summary-title">{t("summary.title")}</h2>
+        {children}
+      </div>
       <div class="card">
         <dl class="facts" data-testid="summary">
           {rows.map(([name, value]) => [<dt key={name}>{name}</dt>, <dd key={`${name}=`}>{value}</dd>])}

@@ -12,6 +12,7 @@ import { useLive } from "./live";
 import { QuantityEntry } from "./quantity_entry";
 import { ApartPanel } from "./apart_panel";
 import { PathPanel } from "./path_panel";
+import { FinishCard } from "./summary_card";
 import { WorkshopPanel } from "./workshop_panel";
 
 function SectionPanel() {
@@ -263,6 +264,7 @@ export function ViewPanels() {
       {tool !== "mate" && tool !== "measure" ? <PathPanel /> : null}
       <MeasureLabel />
       <Legend />
+      <FinishCard />
     </>
   );
 }

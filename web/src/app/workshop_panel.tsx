@@ -29,7 +29,7 @@ function moved(item: BenchItem, key: string): BenchItem | null {
 
 export function WorkshopPanel() {
   const host = viewport.value?.workshop;
-  if (!view.showsWorkshop.value || host === undefined) {
+  if (!view.editsBench.value || !view.drawsWorkshop.value || host === undefined) {
     return null;
   }
   const items = host.items;
@@ -61,7 +61,7 @@ export function WorkshopPanel() {
       <button type="button" class="small-button" onClick={() => (view.benchItems.value = null)}>
         {t("bench.reset")}
       </button>
-      <button type="button" class="icon-button" aria-label={t("dialog.close")} onClick={() => (view.showsWorkshop.value = false)}>
+      <button type="button" class="icon-button" aria-label={t("dialog.close")} onClick={() => (view.editsBench.value = false)}>
         <Icon name="close" />
       </button>
     </div>

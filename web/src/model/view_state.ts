@@ -14,6 +14,8 @@ export type ThemeChoice = "dark" | "light" | "system";
 export function makeViewState() {
   const quality = signal<Quality>("auto");
   const isSlow = signal(false);
+  const isFast = signal(false);
+  const showsWorkshop = signal(true);
   return {
     tool: signal<Tool>("hand"),
     /** The hand that the mouse leads where there are two. */
@@ -38,6 +40,8 @@ export function makeViewState() {
     quality,
     /** The machine draws slowly: without a graphics processor, for one. */
     isSlow,
+    /** It has drawn many pictures in a row quickly. */
+    isFast,
     /** Shadows and workshop are drawn: as is wished, or else where the machine is fast enough. */
     isFine: computed(() => quality.value === "high" || (quality.value === "auto" && !isSlow.value)),
     showsForces: signal(true),
@@ -47,8 +51,14 @@ export function makeViewState() {
     showsGrid: signal(true),
     /** The cube in the corner that turns the view. */
     showsCube: signal(true),
-    /** Floor, walls, bench and tools around the product. */
-    showsWorkshop: signal(false),
+    /** Floor, walls, bench and tools around the product are wanted. */
+    showsWorkshop,
+    /** They are drawn: where somebody has asked for the best picture, or the machine draws fast enough. */
+    drawsWorkshop: computed(() => showsWorkshop.value && (quality.value === "high" || (quality.value === "auto" && isFast.value && !isSlow.value))),
+    /** The eye moves to the next part and its place by itself. */
+    followsSteps: signal(true),
+    /** Somebody puts things onto the bench or away. */
+    editsBench: signal(false),
     /** What stands on the bench; null: as at first. */
     benchItems: signal<readonly BenchItem[] | null>(null),
     assists: signal(true),

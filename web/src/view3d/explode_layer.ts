@@ -15,6 +15,16 @@ const kGathered = 0.08;
 /** Of what is left of the way, a picture. */
 const kGlide = 0.22;
 const kArrived = 0.002;
+/** A product that is opened comes apart onto the table in so long [ms], first outward, then down: choices. */
+const kOpeningMs = 2000;
+const kOutward = 0.45;
+const kOpeningShare = 0.6;
+
+/** From 0 to 1, beginning and ending slowly. */
+function ease(t: number): number {
+  const share = Math.min(1, Math.max(0, t));
+  return share * share * (3 - 2 * share);
+}
 
 export class ExplodeLayer {
   readonly lines = new LineSegments(
@@ -29,6 +39,7 @@ export class ExplodeLayer {
   private readonly shares = new Map<number, number>();
   private shown = "";
   private isGliding = false;
+  private openedMs: number | null = null;
 
   constructor(private readonly view: ViewState) {
     this.lines.frustumCulled = false;
@@ -42,7 +53,7 @@ export class ExplodeLayer {
 
   /** Whether parts are drawn elsewhere than they are. */
   get isOn(): boolean {
-    return this.view.explode.peek() > 0 || this.view.apart.peek() !== null || this.shown !== "";
+    return this.view.explode.peek() > 0 || this.view.apart.peek() !== null || this.shown !== "" || this.openedMs !== null;
   }
 
   setInk(ink: Color): void {
@@ -60,8 +71,26 @@ export class ExplodeLayer {
     this.lines.material.gapSize = 0.03 * scene.radius_m;
   }
 
+  /** Shows the product whole, and then how it comes apart. */
+  open(): void {
+    this.openedMs = performance.now();
+  }
+
+  /** The parts are drawn where they are, from the next picture on. */
+  endOpening(): void {
+    this.openedMs = this.openedMs === null ? null : -Infinity;
+  }
+
+  get isOpening(): boolean {
+    return this.openedMs !== null;
+  }
+
   /** @param poses  Where the parts are. @return Whether anything was drawn elsewhere. */
   update(poses: ReadonlyMap<number, Pose>, parts: Parts): boolean {
+    if (this.openedMs !== null) {
+      this.comeApart((performance.now() - this.openedMs) / kOpeningMs, poses, parts);
+      return true;
+    }
     const explode = this.view.explode.peek();
     const apart = this.view.apart.peek();
     const wanted = apart !== null ? `apart ${apart}` : explode > 0 ? `explode ${explode}` : "";
@@ -81,6 +110,18 @@ export class ExplodeLayer {
     this.isGliding = out !== null && [...this.shares].some(([id, share]) => share !== (out.has(id) ? 1 : 0));
     this.drawLines();
     return true;
+  }
+
+  /** @param time  Share of the opening that has passed. */
+  private comeApart(time: number, poses: ReadonlyMap<number, Pose>, parts: Parts): void {
+    const share = kOpeningShare * ease(time / kOutward);
+    const down = ease((time - kOutward) / (1 - kOutward));
+    for (const { id, goal } of this.scene?.occurrences ?? []) {
+      const now = poses.get(id) ?? goal;
+      const out = add(goal.p, scale(this.offsets.get(id) ?? [0, 0, 0], share));
+      parts.setPose(id, { p: lerp(out, now.p, down), q: slerp(goal.q, now.q, down) });
+    }
+    this.openedMs = time >= 1 ? null : this.openedMs;
   }
 
   private glide(id: number, to: number): number {

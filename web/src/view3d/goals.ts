@@ -1,12 +1,18 @@
 /** Where parts belong: as boxes to reckon with, and as ghosts to be seen. */
 
-import { Box3, Matrix4, Vector3 } from "three";
+import { Box3, Matrix4, Quaternion, Vector3 } from "three";
 import type { Box } from "../model/explode";
-import type { Scene } from "../protocol/messages";
+import type { Pose } from "../model/math";
+import type { Occurrence, Scene } from "../protocol/messages";
 import type { GhostPart } from "./feel_layer";
 import { toMatrix, type Parts } from "./parts";
 
-export function cornersOf({ low, high }: Box): Vector3[] {
+/** None where there is no box. */
+export function cornersOf(box: Box | undefined): Vector3[] {
+  if (box === undefined) {
+    return [];
+  }
+  const { low, high } = box;
   return Array.from({ length: 8 }, (_, k) => new Vector3(...low.map((at, axis) => ((k >> axis) & 1 ? (high[axis] ?? at) : at))));
 }
 
@@ -22,6 +28,21 @@ export function goalBoxes(scene: Scene, parts: Parts): Map<number, Box> {
     }
   }
   return boxes;
+}
+
+/** Those that are not of these parts. */
+export function boxesBut(boxes: ReadonlyMap<number, Box>, ids: readonly number[]): Box3[] {
+  const others = [...boxes].filter(([id]) => !ids.includes(id));
+  return others.map(([, { low, high }]) => new Box3(new Vector3(...low), new Vector3(...high)));
+}
+
+/** Where the weight of a part is, in W. */
+export function centreOfMass(part: Occurrence | null, pose: Pose | undefined): Vector3 | null {
+  if (part === null || pose === undefined) {
+    return null;
+  }
+  const turn = new Quaternion(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
+  return new Vector3(...part.p_BoBcm_m).applyQuaternion(turn).add(new Vector3(...pose.p));
 }
 
 /** The part, with what is held as one with it, in its place; and itself in its own frame. */

@@ -2,12 +2,12 @@
 
 import type { Ray as ThreeRay } from "three";
 import type { Ray } from "../model/assist";
-import { togetherWith } from "../model/store";
 import type { Studio } from "../model/studio";
-import { groupAround } from "../model/tree";
-import { select, type ViewState } from "../model/view_state";
-import type { FaceOf, Vec3 } from "../protocol/messages";
+import type { ViewState } from "../model/view_state";
+import type { Vec3 } from "../protocol/messages";
 import type { CameraRig } from "./camera_rig";
+import { Clicks } from "./clicks";
+import { Fingers, type Point } from "./fingers";
 import type { HandControl } from "./hand_control";
 import { Lifetime } from "./lifetime";
 import type { Eye } from "./mouse_hand";
@@ -28,6 +28,8 @@ type Gesture =
   | { kind: "press"; x: number; y: number; hit: PickHit | null; takes: boolean }
   | { kind: "taking"; x: number; y: number }
   | { kind: "drag" }
+  /** Two fingers: the part turns as they do, and goes away from the eye as they close. */
+  | { kind: "pinch" }
   | { kind: "turn"; x: number; y: number }
   /** Of something on the bench. */
   | { kind: "bench" };
@@ -56,8 +58,10 @@ export interface PointedView {
 export class PointerInput {
   onContextMenu: (x: number, y: number, hit: PickHit | null) => void = () => {};
   private gesture: Gesture = { kind: "none" };
-  private at = { x: 0, y: 0 };
-  private rightPress: { x: number; y: number } | null = null;
+  private at: Point = { x: 0, y: 0 };
+  private readonly fingers = new Fingers();
+  private readonly clicks: Clicks;
+  private rightPress: Point | null = null;
   private lastHover = 0;
   private readonly life = new Lifetime();
 
@@ -65,13 +69,17 @@ export class PointerInput {
     private readonly viewport: PointedView,
     private readonly studio: Studio,
   ) {
+    this.clicks = new Clicks(viewport, studio);
     const { life } = this;
     const { canvas } = viewport;
     // Captured, so that the eye's controls can be stopped before they hear of it.
     life.listen<PointerEvent>(canvas, "pointerdown", (e) => this.onDown(e), { capture: true });
     life.listen<PointerEvent>(canvas, "pointermove", (e) => this.onMove(e));
     life.listen<PointerEvent>(canvas, "pointerup", (e) => this.onUp(e));
-    life.listen(canvas, "pointercancel", () => this.finish());
+    life.listen<PointerEvent>(canvas, "pointercancel", (e) => {
+      this.fingers.lift(e);
+      this.finish();
+    });
     life.listen(canvas, "pointerleave", () => (viewport.view.hovered.value = null));
     life.listen<MouseEvent>(canvas, "dblclick", (e) => this.onDoubleClick(e));
     life.listen<WheelEvent>(canvas, "wheel", (e) => this.onWheel(e), { capture: true, passive: false });
@@ -87,7 +95,7 @@ export class PointerInput {
     this.life.end();
   }
 
-  private locate(event: MouseEvent): { x: number; y: number } {
+  private locate(event: MouseEvent): Point {
     const box = this.viewport.canvas.getBoundingClientRect();
     this.at = { x: event.clientX - box.left, y: event.clientY - box.top };
     return this.at;
@@ -102,11 +110,17 @@ export class PointerInput {
   }
 
   private onDown(event: PointerEvent): void {
-    const { x, y } = this.locate(event);
+    this.fingers.press(event);
     if (!event.isPrimary) {
+      if (this.gesture.kind === "drag" || this.gesture.kind === "pinch") {
+        this.start(event, { kind: "pinch" });
+        event.stopImmediatePropagation();
+      }
       return;
     }
+    const { x, y } = this.locate(event);
     this.viewport.canvas.focus({ preventScroll: true });
+    this.viewport.product.explode.endOpening();
     const { view, hand } = this.viewport;
     const hit = this.pick();
     if (hit !== null) {
@@ -154,8 +168,17 @@ export class PointerInput {
   }
 
   private onMove(event: PointerEvent): void {
+    const { hand, product } = this.viewport;
+    if (this.gesture.kind === "pinch") {
+      const { eye } = this.viewport;
+      this.fingers.lead(event, hand.mouse, eye, eye.metresPerPixel(product.sphere.center.toArray()));
+      return;
+    }
+    this.fingers.move(event);
+    if (!event.isPrimary && this.fingers.count !== 1) {
+      return;
+    }
     const { x, y } = this.locate(event);
-    const { hand } = this.viewport;
     const gesture = this.gesture;
     switch (gesture.kind) {
       case "none":
@@ -201,6 +224,14 @@ export class PointerInput {
   }
 
   private onUp(event: PointerEvent): void {
+    this.fingers.lift(event);
+    if (this.gesture.kind === "pinch") {
+      this.endPinch();
+      return;
+    }
+    if (!event.isPrimary && this.gesture.kind !== "drag") {
+      return;
+    }
     this.locate(event);
     const gesture = this.gesture;
     this.finish();
@@ -211,8 +242,22 @@ export class PointerInput {
         this.onContextMenu(event.clientX, event.clientY, this.pick());
       }
     } else if (gesture.kind === "press" && Math.hypot(this.at.x - gesture.x, this.at.y - gesture.y) <= kClickPx) {
-      this.click(event, gesture.hit);
+      this.clicks.click(event, gesture.hit);
     }
+  }
+
+  /** The finger that is left goes on to drag, from where it is. */
+  private endPinch(): void {
+    const left = this.fingers.first;
+    if (left === null) {
+      this.finish();
+      return;
+    }
+    const box = this.viewport.canvas.getBoundingClientRect();
+    this.at = { x: left.x - box.left, y: left.y - box.top };
+    this.gesture = { kind: "drag" };
+    this.viewport.hand.mouse.drop();
+    this.viewport.hand.mouse.grab(this.ray(), this.viewport.eye);
   }
 
   private finish(): void {
@@ -220,53 +265,6 @@ export class PointerInput {
     this.viewport.rig.controls.enabled = true;
     this.viewport.hand.mouse.drop();
     this.viewport.workshop.drop();
-  }
-
-  private click(event: PointerEvent, hit: PickHit | null): void {
-    const { view } = this.viewport;
-    const tool = view.tool.peek();
-    if (tool === "measure" || tool === "mate") {
-      if (hit !== null) {
-        this.pickFace({ occurrence: hit.occurrence, face: hit.face });
-      }
-      return;
-    }
-    const isAdding = event.ctrlKey || event.metaKey || event.shiftKey;
-    if (hit === null) {
-      if (!isAdding) {
-        select(view, [], false);
-      }
-      return;
-    }
-    const mode = view.selectMode.peek();
-    const scene = this.viewport.product.scene;
-    if (mode === "subassembly" && scene !== null) {
-      select(view, groupAround(scene, hit.occurrence, view.selected.peek()), isAdding);
-      return;
-    }
-    select(view, event.altKey ? [hit.occurrence] : togetherWith(this.studio.store.leaders.peek(), hit.occurrence), isAdding);
-    if (mode === "face") {
-      view.selectedFace.value = { occurrence: hit.occurrence, face: hit.face };
-    }
-  }
-
-  private pickFace(face: FaceOf): void {
-    const { view } = this.viewport;
-    const picked = view.picked.peek();
-    const next = picked.length >= 2 ? [face] : [...picked, face];
-    view.picked.value = next;
-    if (view.tool.peek() === "measure") {
-      void this.measure(next);
-    }
-  }
-
-  private async measure(faces: readonly FaceOf[]): Promise<void> {
-    const [a, b] = faces;
-    if (a !== undefined) {
-      this.viewport.view.measurement.value = await this.studio.command(
-        b === undefined ? { command: "measure", a } : { command: "measure", a, b },
-      );
-    }
   }
 
   private onDoubleClick(event: MouseEvent): void {

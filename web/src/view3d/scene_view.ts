@@ -1,7 +1,7 @@
 /** The product in the view: loads it, puts parts where the frames say, and shows what is marked. */
 
 import { untracked } from "@preact/signals";
-import { Group, Quaternion, Ray, Sphere, Vector3 } from "three";
+import { Group, Ray, Sphere, Vector3, type Box3 } from "three";
 import { clearanceOf, type Box } from "../model/explode";
 import { Extrapolator } from "../model/extrapolate";
 import { toQuat, toVec3, type Pose } from "../model/math";
@@ -13,11 +13,11 @@ import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
 import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ExplodeLayer } from "./explode_layer";
-import { cornersOf, ghostsOf, goalBoxes } from "./goals";
+import { boxesBut, centreOfMass, cornersOf, ghostsOf, goalBoxes } from "./goals";
 import { loadShapes } from "./glb";
 import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
-import { loadedAs, type Loaded } from "./loaded_as";
+import { loadedAs, opensWhole, type Loaded } from "./loaded_as";
 import { MarkLayer } from "./mark_layer";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
@@ -36,7 +36,6 @@ export class SceneView {
   isDirty = true;
   /** Called when a product has been loaded and stands in the view. */
   onLoaded: (loaded: Loaded) => void = () => {};
-
   private palette: Palette | null = null;
   private readonly versions = new Map<number, number>();
   private readonly poses = new Map<number, Pose>();
@@ -48,7 +47,6 @@ export class SceneView {
   private loadCount = 0;
   private glbUrl = "";
   private readonly life = new Lifetime();
-  /** One for each hand. */
   private readonly feels = Array.from({ length: kMaxHands }, () => new FeelLayer(this.arrowScale));
   private readonly heldKeys = this.feels.map(() => "");
 
@@ -110,14 +108,23 @@ export class SceneView {
 
   /** Of what is to be seen at first: in a study also the place of the part at hand. */
   firstOutline(): Vector3[] {
-    const box = this.boxes.get(this.store.study.peek()?.occurrence ?? -1);
-    return [...this.outline(), ...(box === undefined ? [] : cornersOf(box))];
+    return [...this.outline(), ...this.placeOf(this.store.study.peek()?.occurrence ?? -1)];
+  }
+
+  /** Corners of the box of a part in its place. */
+  placeOf(occurrence: number): Vector3[] {
+    return cornersOf(this.boxes.get(occurrence));
+  }
+
+  /** Boxes of the places of all parts but these. */
+  placesOfOthers(ids: readonly number[]): Box3[] {
+    return boxesBut(this.boxes, ids);
   }
 
   /** How far out a part has to be to be clear of all that is in its place already [m]. */
   clearance(step: Step): number {
-    const placed = [...this.boxes.keys()].filter((id) => this.store.placements.peek().get(id) === "placed");
-    return clearanceOf(step, this.boxes, placed);
+    const isPlaced = (id: number) => this.store.placements.peek().get(id) === "placed";
+    return clearanceOf(step, this.boxes, [...this.boxes.keys()].filter(isPlaced));
   }
 
   pick(ray: Ray): PickHit | null {
@@ -180,6 +187,9 @@ export class SceneView {
     this.applyLooks();
     this.applySection();
     this.isDirty = true;
+    if (loaded === "new" && opensWhole(scene, this.store, this.view)) {
+      this.explode.open();
+    }
     this.onLoaded(loaded);
   }
 
@@ -267,19 +277,9 @@ export class SceneView {
       }
       const contacts = live?.contacts.filter((contact) => contact.hand === k) ?? [];
       feel.setGoalShown(hand !== null && hand.state < 5 && isWhole);
-      const centre = hand === null ? null : this.centreOfMass(hand.occurrence);
+      const centre = hand === null ? null : centreOfMass(this.occurrence(hand.occurrence), this.poses.get(hand.occurrence));
       this.isDirty = feel.update(hand, contacts, centre, shows) || this.isDirty;
     });
-  }
-
-  private centreOfMass(occurrence: number): Vector3 | null {
-    const pose = this.poses.get(occurrence);
-    const part = this.occurrence(occurrence);
-    if (pose === undefined || part === null) {
-      return null;
-    }
-    const turn = new Quaternion(pose.q[1], pose.q[2], pose.q[3], pose.q[0]);
-    return new Vector3(...part.p_BoBcm_m).applyQuaternion(turn).add(new Vector3(...pose.p));
   }
 
   private showGhosts(feel: FeelLayer, hand: HandState | null): void {

@@ -2,12 +2,10 @@
 
 import {
   AmbientLight,
-  CylinderGeometry,
   DirectionalLight,
   Group,
   HemisphereLight,
   Mesh,
-  MeshStandardMaterial,
   PCFShadowMap,
   PlaneGeometry,
   ShadowMaterial,
@@ -16,6 +14,7 @@ import {
   type Sphere,
   type WebGLRenderer,
 } from "three";
+import { Fixture } from "./fixture";
 import { FloorGrid } from "./floor_grid";
 import { disposeTree } from "./lifetime";
 import type { Palette } from "./palette";
@@ -27,17 +26,11 @@ export class Stage {
   private readonly sky = new HemisphereLight(0xffffff, 0x6f7684, 1.25);
   private readonly base = new AmbientLight(0xffffff, 0.25);
   private readonly grid = new FloorGrid();
-  private readonly stand: Mesh<CylinderGeometry, MeshStandardMaterial>;
+  private readonly fixture = new Fixture();
   private readonly shade: Mesh<PlaneGeometry, ShadowMaterial>;
 
   constructor() {
     this.sky.position.set(0, 0, 1);
-    this.stand = new Mesh(
-      new CylinderGeometry(1, 1.25, 1, 48).rotateX(Math.PI / 2).translate(0, 0, -0.5),
-      new MeshStandardMaterial({ roughness: 0.8, metalness: 0 }),
-    );
-    this.stand.receiveShadow = this.stand.castShadow = true;
-    this.stand.visible = false;
     this.shade = new Mesh(new PlaneGeometry(1, 1), new ShadowMaterial({ opacity: 0.25 }));
     this.shade.receiveShadow = true;
     this.shade.renderOrder = -1;
@@ -47,16 +40,18 @@ export class Stage {
     this.sun.shadow.normalBias = 0.0008;
     this.sun.shadow.radius = 4;
     this.root.add(this.sun, this.sun.target, this.fill, this.fill.target, this.sky, this.base);
-    this.root.add(this.grid.object, this.shade, this.stand);
+    this.root.add(this.grid.object, this.shade, this.fixture.root);
   }
 
   dispose(): void {
+    this.fixture.dispose();
     disposeTree(this.root);
   }
 
   /** Sets light and floor for parts in this sphere on a table of this height [m].
-   @param base  Box of what stands in the fixture: it may be above the table. */
-  fit(sphere: Sphere, cellRadius: number, tableZ: number, base: Box3): void {
+   @param base    Box of what stands in the fixture: it may be above the table.
+   @param others  Boxes of the other parts in their places. */
+  fit(sphere: Sphere, cellRadius: number, tableZ: number, base: Box3, others: readonly Box3[]): void {
     const { center, radius } = sphere;
     this.grid.fit(center.x, center.y, tableZ - 1e-4, cellRadius);
     this.shade.position.set(center.x, center.y, tableZ - 1e-4);
@@ -72,25 +67,12 @@ export class Stage {
     camera.far = 8 * radius;
     camera.updateProjectionMatrix();
     this.sun.shadow.normalBias = 0.003 * radius;
-    this.placeStand(tableZ, base);
-  }
-
-  /** What the fixture stands on, so that nothing floats. */
-  private placeStand(tableZ: number, base: Box3): void {
-    const height = base.min.z - tableZ;
-    this.stand.visible = !base.isEmpty() && height > 1e-3;
-    if (this.stand.visible) {
-      const size = base.getSize(new Vector3());
-      const middle = base.getCenter(new Vector3());
-      const width = 0.2 * Math.min(size.x, size.y);
-      this.stand.position.set(middle.x, middle.y, base.min.z - 1e-4);
-      this.stand.scale.set(width, width, height);
-    }
+    this.fixture.place(tableZ, base, others);
   }
 
   setPalette(palette: Palette): void {
     this.grid.setInk(palette.grid, palette.isDark ? 0.5 : 0.62);
-    this.stand.material.color.set(palette.isDark ? 0x4a5364 : 0xc3cbd8);
+    this.fixture.setDark(palette.isDark);
     this.shade.material.opacity = palette.isDark ? 0.42 : 0.22;
     this.sky.intensity = palette.isDark ? 1.15 : 1.45;
   }

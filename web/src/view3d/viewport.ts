@@ -1,12 +1,13 @@
 /** The 3D view as a whole: renderer, loop, eye, hand. What the rest of the page asks of it is here. */
 
-import { Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, WebGLRenderer, Scene as ThreeScene, type Color } from "three";
+import { Group, PerspectiveCamera, Ray, Raycaster, Sphere, Vector2, Vector3, Scene as ThreeScene, type Color, type WebGLRenderer } from "three";
 import type { Vec3 } from "../model/math";
 import type { PartPaths } from "../model/part_path";
 import type { Studio } from "../model/studio";
 import type { SharedView } from "../model/view_link";
 import type { ViewState } from "../model/view_state";
 import { nowMs, type LiveState } from "../protocol/frame_store";
+import { CameraGuide } from "./camera_guide";
 import { CameraRig, type ViewName } from "./camera_rig";
 import { makeEye } from "./eye";
 import { firstDirection } from "./first_direction";
@@ -21,6 +22,7 @@ import { readPalette } from "./palette";
 import { copyPicture } from "./picture";
 import { PathLayer } from "./path_layer";
 import { PointerInput } from "./pointer_input";
+import { makeRenderer } from "./renderer";
 import { SceneView } from "./scene_view";
 import { applyView, readView } from "./shared_view";
 import { Stage } from "./stage";
@@ -43,6 +45,7 @@ export class Viewport {
   readonly hand: HandControl;
   readonly pointer: PointerInput;
   readonly workshop: WorkshopHost;
+  private readonly guide: CameraGuide;
   framesDrawn = 0;
   readonly meter = new FrameMeter();
   live: LiveState | null = null;
@@ -76,10 +79,7 @@ export class Viewport {
     private readonly studio: Studio,
     readonly view: ViewState,
   ) {
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, stencil: true });
-    this.renderer.localClippingEnabled = true;
-    this.renderer.autoClear = false;
-    this.renderer.setClearColor(0x000000, 0);
+    this.renderer = makeRenderer(this.canvas);
     host.append(this.canvas);
     this.rig = new CameraRig(this.canvas);
     this.product = new SceneView(studio.store, view);
@@ -87,14 +87,12 @@ export class Viewport {
     this.three.add(this.worldRoot);
     this.painter = new Painter(this.renderer, this.three, this.rig, this.product, this.cube, view);
     this.workshop = new WorkshopHost(this.worldRoot, view);
-    this.workshop.onChange = () => {
-      this.stage.setGridShown(view.showsGrid.peek() && !this.workshop.isShown);
-      this.invalidate();
-    };
+    this.workshop.onChange = () => this.showGrid();
     this.hand = new HandControl(studio, this.product, view);
     this.pointer = new PointerInput(this, studio);
     this.product.onLoaded = (loaded) => this.onLoaded(loaded);
     this.life.followSize(host, () => this.resize());
+    this.guide = new CameraGuide(this, studio, view);
     this.followState();
     this.resize();
     this.renderer.setAnimationLoop((now) => this.tick(now));
@@ -107,7 +105,7 @@ export class Viewport {
     this.renderer.setAnimationLoop(null);
     this.life.end();
     this.listeners.clear();
-    const own = [this.pointer, this.hand, this.workshop, this.product, this.stage, this.cube, this.painter, this.rig];
+    const own = [this.guide, this.pointer, this.hand, this.workshop, this.product, this.stage, this.cube, this.painter, this.rig];
     own.forEach((each) => each.dispose());
     this.pathLayer?.dispose();
     this.renderer.dispose();
@@ -155,10 +153,9 @@ export class Viewport {
 
   showPaths(paths: PartPaths): void {
     this.pathLayer?.dispose();
-    const layer = new PathLayer(paths);
-    layer.onChange = () => this.invalidate();
-    this.pathLayer = layer;
-    this.worldRoot.add(layer.root);
+    this.pathLayer = new PathLayer(paths);
+    this.pathLayer.onChange = () => this.invalidate();
+    this.worldRoot.add(this.pathLayer.root);
   }
 
   /** Somebody is in VR from now on. */
@@ -224,24 +221,24 @@ export class Viewport {
       this.renderer.setPixelRatio(isFine ? Math.min(2, devicePixelRatio) : 1);
       this.resize();
     });
-    life.follow(() => {
-      this.stage.setGridShown(view.showsGrid.value && !this.workshop.isShown);
-      this.invalidate();
-    });
+    life.follow(() => this.showGrid());
     life.follow(() => {
       void view.stereo.value;
       this.resize();
-      if (this.product.parts !== null) {
-        this.rig.fit(this.product.outline(), false);
-      }
+      this.rig.fit(this.product.outline(), false);
     });
+  }
+
+  private showGrid(): void {
+    this.stage.setGridShown(this.view.showsGrid.value && !this.workshop.isShown);
+    this.invalidate();
   }
 
   private onLoaded(loaded: Loaded): void {
     const scene = this.product.scene!;
     const around = boxOf(this.product.outline()).getBoundingSphere(new Sphere());
     const fixed = scene.occurrences.filter((o) => o.is_base).map((o) => o.id);
-    this.stage.fit(around, scene.radius_m, scene.table_z_m, boxOf(this.product.outline(fixed)));
+    this.stage.fit(around, scene.radius_m, scene.table_z_m, boxOf(this.product.outline(fixed)), this.product.placesOfOthers(fixed));
     this.workshop.fit(around, scene.table_z_m);
     this.pathLayer?.setRadius(scene.radius_m);
     this.rig.setReach(Math.max(scene.radius_m, 0.5 * around.radius));
@@ -249,6 +246,7 @@ export class Viewport {
       this.show(this.pendingView);
     } else if (loaded === "new" || (loaded === "completed" && this.rig.isWhereItBegan())) {
       this.lookAnew();
+      this.guide.showNext();
     }
     this.hand.stop();
   }
@@ -264,7 +262,6 @@ export class Viewport {
     if (isAsAtFirst) {
       this.lookAnew();
     }
-    this.invalidate();
     // The canvas is empty after a change of its size: not to be seen.
     this.draw();
   }
@@ -285,6 +282,7 @@ export class Viewport {
       }
     }
     // What was recorded is drawn as it was: only of what is live it is guessed where it is by now.
+    this.guide.tick(seconds);
     this.product.update(frames, live, playback === null ? nowMs() : (live?.sentMs ?? 0));
     const hasMoved = this.rig.controls.update(seconds);
     const isDue = this.renderer.xr.isPresenting || now - this.lastDrawn > kIdleMs;
@@ -293,6 +291,7 @@ export class Viewport {
       this.draw();
       this.lastDrawn = now;
       this.view.isSlow.value ||= this.meter.drawn(now);
+      this.view.isFast.value ||= this.meter.isFast;
     } else {
       this.meter.rested();
     }

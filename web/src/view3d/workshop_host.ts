@@ -104,7 +104,7 @@ export class WorkshopHost {
   }
 
   private get isWanted(): boolean {
-    return this.view.showsWorkshop.value && this.view.isFine.value;
+    return this.view.drawsWorkshop.value;
   }
 
   private async load(): Promise<void> {

@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { liveNumbers } from "../../model/hints";
 import { isPointerHand } from "../../model/hands";
 import { store, studio, view } from "../app_state";
-import { ForcesButton } from "../header";
+import { ForcesButton } from "../forces_button";
 import { t } from "../i18n";
 import { Icon } from "../icons";
 import { holdingHand, setText, useLive } from "../live";

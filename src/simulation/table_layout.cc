@@ -1,0 +1,198 @@
+#include "simulation/table_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "dynamics/world.h"
+#include "product/product.h"
+#include "simulation/simulated_person.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::OccurrenceId;
+using product::Product;
+
+constexpr double kTableGap = 10e-3;     // [m] between parts on the table
+constexpr double kTransferGap = 30e-3;  // [m] between a carried part and the product
+constexpr double kSettleTime = 3.0;     // [s]; parts that fall 30 mm lie still sooner: a choice.
+constexpr double kFixtureShare = 0.3;   // Height of the fixture by the product's radius: a choice.
+constexpr double kRowShare = 2.0;       // Width of the table by the root of its area: a choice.
+
+spatial::Box DrawnBox(const Product& product, OccurrenceId id) {
+  return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
+}
+
+/** Gives every subassembly that is put together first its place on the shelf: beside the product,
+ on the other side than the table's parts. Returns the largest radius of what is carried. */
+double PlaceOnShelf(Model* model) {
+  const Product& product = *model->product;
+  double reach = 0;
+  for (const product::Part& part : product.parts) {
+    reach = std::max(reach, 0.5 * part.box_B.size().norm());
+  }
+  std::map<OccurrenceId, spatial::Box> boxes;  // by the part that leads
+  double widest = 0;
+  for (const SequenceStep& step : model->sequence.steps) {
+    if (step.kind == SequenceStep::Kind::kPark) {
+      spatial::Box& box = boxes[step.occurrence];
+      box = DrawnBox(product, step.occurrence);
+      for (const OccurrenceId member : step.members) {
+        box.Add(DrawnBox(product, member));
+      }
+      widest = std::max(widest, box.size().norm());
+    }
+  }
+  reach = std::max(reach, 0.5 * widest);
+  const double radius = 0.5 * product.box_W.size().norm() + reach + kTransferGap;
+  double place = -0.5 * (widest + kTableGap) * static_cast<double>(boxes.size() - 1);
+  for (SequenceStep& step : model->sequence.steps) {
+    if (step.kind == SequenceStep::Kind::kPark) {
+      const Vec3 shelf = product.box_W.centre() + Vec3(place, -(radius + widest + kTableGap), 0);
+      step.offset_W = shelf - boxes[step.occurrence].centre();
+      place += widest + kTableGap;
+    }
+  }
+  return reach;
+}
+
+/** The lowest point that a part reaches on its way in, and while it is carried to the beginning of
+ its way around the product (SimulatedPerson). */
+double CalcLowest(const Model& model, const SequenceStep& step) {
+  const Product& product = *model.product;
+  spatial::Box box = DrawnBox(product, step.occurrence);
+  for (const OccurrenceId member : step.members) {
+    box.Add(DrawnBox(product, member));
+  }
+  const spatial::Pose& X_WB_goal = product.occurrences[step.occurrence.index()].X_WB;
+  const Vec3 grip = X_WB_goal * model.bodies[step.occurrence.index()].mass.p_BoBcm_B;
+  const double radius = (box.centre() - grip).norm() + 0.5 * box.size().norm();
+  Vec3 out_W = step.extraction_W;
+  double lowest = std::min(box.low.z(), box.low.z() + step.offset_W.z());
+  for (std::size_t k = 0; k < step.way.size(); ++k) {
+    lowest = std::min(lowest, (step.way[k] * X_WB_goal.Inverse() * grip).z() - radius);
+    if (k > 0 && (step.way[k].p() - step.way[k - 1].p()).norm() > 0) {
+      out_W = (step.way[k].p() - step.way[k - 1].p()).normalized();
+    }
+  }
+  const double rise = std::min(out_W.z(), std::sin(std::atan(kLeastRiseAside)));
+  return std::min(lowest, model.centre_W.z() + model.transfer_radius * rise - radius);
+}
+
+/** The table is as near below the product as a fixture is high, or lower, where parts come from the
+ side or from below: none meets it on its way. */
+double CalcTableHeight(const Model& model) {
+  const spatial::Box& box = model.product->box_W;
+  double height = box.low.z() - 0.5 * kFixtureShare * box.size().norm();
+  for (const SequenceStep& step : model.sequence.steps) {
+    if (step.kind != SequenceStep::Kind::kBase) {
+      height = std::min(height, CalcLowest(model, step) - kTransferGap);
+    }
+  }
+  return height;
+}
+
+/** The parts in the order in which they lie in their rows: small ones in front, larger ones behind;
+ among those of a size, in the order in which they come, and equal parts together. What stands in
+ the fixture from the beginning comes last: its place on the table stays empty. */
+std::vector<std::size_t> ListAsTheyLie(const Model& model, std::vector<std::size_t> bodies) {
+  const Product& product = *model.product;
+  std::map<product::PartId, std::size_t> first_steps;
+  for (std::size_t k = 0; k < model.sequence.steps.size(); ++k) {
+    const OccurrenceId id = model.sequence.steps[k].occurrence;
+    first_steps.emplace(product.occurrences[id.index()].part, k);
+  }
+  const auto rank = [&](std::size_t i) {
+    const product::PartId part = product.occurrences[i].part;
+    const auto step = first_steps.find(part);
+    const double size = model.bodies[i].shape->box_B().size().norm();
+    const bool is_base = OccurrenceId(i) == FindBase(model.sequence);
+    return std::tuple(is_base, std::ilogb(size),
+                      step == first_steps.end() ? model.sequence.steps.size() : step->second, part);
+  };
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [&](std::size_t x, std::size_t y) { return rank(x) < rank(y); });
+  return bodies;
+}
+
+}  // namespace
+
+dynamics::WorldOptions TableOptions(const Model& model) {
+  dynamics::WorldOptions options;
+  options.table_z = model.table_z;
+  return options;
+}
+
+Result<void> LayOutParts(Model* model) {
+  const Product& product = *model->product;
+  const double reach = PlaceOnShelf(model);
+  model->centre_W = product.box_W.centre();
+  const double radius = 0.5 * product.box_W.size().norm();
+  model->transfer_radius = radius + reach + kTransferGap;
+  model->table_z = CalcTableHeight(*model);
+  std::vector<std::size_t> order;
+  double area = 0;
+  const auto cell = [&](std::size_t i) {
+    return model->bodies[i].shape->box_B().size().norm() + kTableGap;
+  };
+  const auto& fixtures = model->accessories.fixtures;
+  const std::size_t standing = fixtures.size() - model->accessories.bench_count;
+  for (std::size_t i = 0; i < model->bodies.size(); ++i) {
+    const auto end = fixtures.begin() + static_cast<std::ptrdiff_t>(standing);
+    if (std::find(fixtures.begin(), end, OccurrenceId(i)) == end) {
+      order.push_back(i);
+      area += cell(i) * cell(i);
+    }
+  }
+  double widest = 0;
+  for (const std::size_t i : order) {
+    widest = std::max(widest, cell(i));
+  }
+  order = ListAsTheyLie(*model, std::move(order));
+  const double width = std::max(kRowShare * std::sqrt(area), widest);
+  const double left = model->centre_W.x() - 0.5 * width;
+  double x = left;
+  double y = model->centre_W.y() + model->transfer_radius;
+  double row_depth = 0;
+  dynamics::World world(TableOptions(*model));
+  std::vector<dynamics::BodyId> ids;
+  std::vector<std::size_t> members;
+  for (const std::size_t i : order) {
+    Body& body = model->bodies[i];
+    const double size = cell(i);
+    if (x + size > left + width) {
+      x = left;
+      y += row_depth;
+      row_depth = 0;
+    }
+    row_depth = std::max(row_depth, size);
+    const spatial::Box box =
+        spatial::Transform(spatial::Pose(body.X_WB_goal.q(), Vec3::Zero()), body.shape->box_B());
+    const Vec3 place(x + 0.5 * size, y + 0.5 * size, model->table_z + 1e-3);
+    const Vec3 bottom(box.centre().x(), box.centre().y(), box.low.z());
+    body.X_WB_start = spatial::Pose(body.X_WB_goal.q(), place - bottom);
+    x += size;
+    const auto id =
+        world.AddBody(product.part_of(body.occurrence).mesh.vertices, body.mass, body.X_WB_start);
+    if (!id) {
+      return Unexpected(id.error());
+    }
+    ids.push_back(*id);
+    members.push_back(i);
+  }
+  (void)world.Settle(kSettleTime);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    model->bodies[members[k]].X_WB_start = world.pose(ids[k]);
+  }
+  for (std::size_t k = standing; k < fixtures.size(); ++k) {
+    Body& body = model->bodies[fixtures[k].index()];
+    body.X_WB_goal = body.X_WB_start;
+  }
+  return {};
+}
+
+}  // namespace hvas::simulation
