@@ -366,7 +366,7 @@ ElasticPart MeasureGasket(const Part& part) {
 bool IsSheet(const Part& part, const ElasticPart& gasket) {
   constexpr double kBroad = 0.8;  // Area over free edges: a ring that is 1.6 times as wide as
                                   // thick. A choice.
-  constexpr double kArea = 0.1;  // How far the area may be off. A choice.
+  constexpr double kArea = 0.1;   // How far the area may be off. A choice.
   double area = 0;
   for (const Face& face : part.faces) {
     area += IsPlaneAcross(face, gasket.axis_B) ? 0.5 * face.area : 0;
