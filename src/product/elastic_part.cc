@@ -310,7 +310,6 @@ ElasticPart MeasureDisc(const Part& part) {
 ElasticPart MeasureLockWasher(const Part& part) {
   constexpr double kSlit = 0.97;      // Share of the turn, less a slit of 10 degrees. A choice.
   constexpr double kDrawnOpen = 1.3;  // Of the thickness: what is lower is drawn flat. A choice.
-  constexpr double kFreeHeight = 2;   // DIN 127: at least twice the thickness.
   ElasticPart elastic;
   const RoundSize size = MeasureRound(part, FindAxis(part));
   SetRound(size, &elastic);
@@ -318,7 +317,6 @@ ElasticPart MeasureLockWasher(const Part& part) {
       size.ring_area() > 0 ? std::min(size.length, size.volume / (kSlit * size.ring_area())) : 0;
   if (size.length < kDrawnOpen * elastic.thickness) {
     elastic.thickness = size.length;
-    elastic.free_size = kFreeHeight * size.length;
   }
   SetSpringMaterial(part, &elastic);
   return elastic;
