@@ -60,14 +60,17 @@ struct ElasticPart {
 
  | kind | recognised by | sizes from |
  |---|---|---|
- | coil spring | form: turns of round wire with gaps | diameters of the mesh; active coils: the sum
- of the gaps over the widest one, and one more where the ends are neither closed nor ground | | disc
- spring | name or form: a cone | diameters, thickness from the volume, free height as drawn; drawn
- flat, that of DIN 2093, series A, for its diameters | | lock washer | name | diameters, thickness
- from the volume; free height as drawn, or drawn flat twice the thickness (DIN 127) | | leaf spring
- | name | its box, thickness from the volume | | gasket | name, and the form of a flat sheet | its
- box and faces | | slit pin | name | diameters; drawn at its nominal size, those of ISO 8752 | |
- sleeve | name or material of rubber, and the form of a tube | diameters | */
+ | coil spring | form: turns of round wire | diameters; active coils by the gaps |
+ | disc spring | name, or form: a cone | diameters; thickness from the volume |
+ | lock washer | name | diameters; thickness from the volume |
+ | leaf spring | name | its box; thickness from the volume |
+ | gasket | name, and form: a flat sheet | its box and faces |
+ | slit pin | name | diameters; at its nominal size those of ISO 8752 |
+ | sleeve | rubber, and form: a tube | diameters |
+
+ Active coils are the sum of the gaps over the widest one, and one more where the ends are neither
+ closed nor ground. The free length is the drawn one, but that of DIN 2093, series A, for a disc
+ spring that is drawn flat. */
 [[nodiscard]] std::optional<ElasticPart> FindElasticPart(const Part& part);
 
 /** Measures a part as one of a kind, whatever its name and form are. */
