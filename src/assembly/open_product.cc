@@ -13,6 +13,7 @@
 #include "base/units.h"
 #include "cad/encoding.h"
 #include "mates/assignments.h"
+#include "mates/elastic_parts.h"
 #include "mates/flexible_parts.h"
 #include "mates/infer.h"
 #include "mates/side_file.h"
@@ -55,6 +56,7 @@ bool HasSideFile(const OpenOptions& options) {
 struct PartStatements {
   std::vector<product::KeptApart> apart;  // Not to be welded.
   std::vector<mates::StatedFlexible> flexible;
+  std::vector<mates::StatedElastic> elastic;
 };
 
 Result<PartStatements> ReadPartStatements(const OpenOptions& options) {
@@ -70,6 +72,7 @@ Result<PartStatements> ReadPartStatements(const OpenOptions& options) {
     statements.apart.insert(statements.apart.end(), side_file->apart.begin(),
                             side_file->apart.end());
     statements.flexible = std::move(side_file->flexible);
+    statements.elastic = std::move(side_file->elastic);
   }
   return statements;
 }
@@ -101,6 +104,9 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   if (const auto set =
           mates::SetFlexibleParts(stated->flexible, options.rigid, &*product, diagnostics);
       !set) {
+    return Unexpected(set.error());
+  }
+  if (const auto set = mates::SetElasticParts(stated->elastic, &*product); !set) {
     return Unexpected(set.error());
   }
   if (const auto done = mates::Infer(&*product, inferred, watch); !done) {

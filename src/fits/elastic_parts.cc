@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "fits/pressed_parts.h"
+
 namespace hvas::fits {
 namespace {
 
@@ -61,6 +63,35 @@ double CalcSpreadStiffness(const OpenRing& ring) {
   const double inertia = ring.thickness * ring.width * ring.width * ring.width / 12;
   return 4 * std::numbers::pi * ring.modulus * inertia /
          (3 * ring.radius * ring.radius * ring.radius);
+}
+
+double CalcSlitPinForce(const SlitPin& pin, double squeeze) {
+  const double radius = 0.5 * (pin.diameter - pin.wall);
+  const double elastic =
+      CalcSpreadStiffness({radius, pin.wall, pin.length, pin.modulus}) * std::max(0.0, squeeze);
+  const double plastic =
+      std::numbers::pi * pin.yield * pin.length * pin.wall * pin.wall / (4 * radius);
+  return std::min(elastic, plastic);
+}
+
+double CalcSleeveHoopStiffness(const RubberSleeve& sleeve) {
+  const double wall = sleeve.outer_radius - sleeve.inner_radius;
+  const double radius = 0.5 * (sleeve.outer_radius + sleeve.inner_radius);
+  return 2 * std::numbers::pi * sleeve.modulus * sleeve.length * wall / radius;
+}
+
+double CalcSleeveStiffness(const RubberSleeve& sleeve) {
+  const double wall = sleeve.outer_radius - sleeve.inner_radius;
+  const double shape = sleeve.length / (2 * wall);
+  const double block = 4.0 / 3.0 * sleeve.modulus * (1 + shape * shape);
+  const double area =
+      std::numbers::pi * (sleeve.outer_radius + sleeve.inner_radius) * sleeve.length;
+  return LimitByBulk(block) * area / wall;
+}
+
+double CalcSleeveShearStiffness(const RubberSleeve& sleeve) {
+  return 2 * std::numbers::pi * sleeve.modulus / 3 * sleeve.length /
+         std::log(sleeve.outer_radius / sleeve.inner_radius);
 }
 
 }  // namespace hvas::fits

@@ -1,7 +1,8 @@
 #pragma once
 
-/** Forces of parts that give elastically on their way: closed forms of snap hooks, O-rings and
- retaining rings. docs/algorithms/flexible.md compares them with published examples. */
+/** Forces of parts that give elastically on their way: closed forms of snap hooks, O-rings,
+ retaining rings, slit pins and sleeves of rubber. What is pressed together along its way is in
+ fits/pressed_parts.h. docs/algorithms/flexible.md compares them with published examples. */
 namespace hvas::fits {
 
 /** An arm of rectangular section that bends aside: a snap hook, a wall. */
@@ -66,5 +67,46 @@ struct OpenRing {
  Source: Castigliano's theorem for a thin curved beam, as Timoshenko, Strength of Materials II,
  has it for piston rings. */
 [[nodiscard]] double CalcSpreadStiffness(const OpenRing& ring);
+
+/** A slit tube that its hole closes: a slit (spring) pin. */
+struct SlitPin {
+  double diameter{0};  ///< Outer diameter with nothing on it [m].
+  double wall{0};      ///< [m]
+  double length{0};    ///< Length in the hole [m].
+  double modulus{0};   ///< [Pa]
+  double yield{0};     ///< [Pa]
+};
+
+/** Radial force on the whole pin whose radius its hole makes smaller [N]: that of an open ring
+ (CalcSpreadStiffness()), but no more than pi sigma_y L w^2 / (4 r), at which the wall opposite of
+ the slit yields all through: uniform pressure bends it there by 2 p r^2.
+ Source: as CalcSpreadStiffness(); the plastic moment of a rectangle, sigma_y L w^2 / 4.
+ @param squeeze  How much smaller the radius becomes, >= 0 [m]. */
+[[nodiscard]] double CalcSlitPinForce(const SlitPin& pin, double squeeze);
+
+/** A tube of rubber between a hole and a shaft: an elastic bushing, a grommet. */
+struct RubberSleeve {
+  double inner_radius{0};  ///< [m]
+  double outer_radius{0};  ///< [m]
+  double length{0};        ///< [m]
+  double modulus{0};       ///< E of the rubber [Pa].
+};
+
+/** Radial force on the whole sleeve, on one side of which there is nothing, for each metre by which
+ its radius changes [N/m]: 2 pi E A / r, A = L w, as of an O-ring (CalcStretchStiffness()). */
+[[nodiscard]] double CalcSleeveHoopStiffness(const RubberSleeve& sleeve);
+
+/** Radial force on the whole sleeve for each metre by which hole and shaft squeeze its wall [N/m]:
+ E_c 2 pi r L / w, with w the wall, r its middle radius, and E_c = 4/3 E (1 + S^2), S = L / (2 w),
+ of a long strip of rubber between surfaces on which it does not slide.
+ Source: Gent and Lindley, The compression of bonded rubber blocks, Proc. IMechE 173 (1959), with
+ the bulk modulus beside it as in CalcPadModulus(). */
+[[nodiscard]] double CalcSleeveStiffness(const RubberSleeve& sleeve);
+
+/** Force along its axis for each metre by which a hole and a shaft that hold a sleeve move against
+ each other along it [N/m]: 2 pi G L / ln(b / a), G = E / 3.
+ Source: Adkins and Gent, Load-deflexion relations of rubber bush mountings, Brit. J. Appl. Phys. 5
+ (1954): the axial mode. */
+[[nodiscard]] double CalcSleeveShearStiffness(const RubberSleeve& sleeve);
 
 }  // namespace hvas::fits

@@ -23,6 +23,9 @@ double ControlPoint(const GivingCurve& curve, std::ptrdiff_t i) noexcept {
 }
 
 Shape CalcShape(const GivingCurve& curve, double travel) noexcept {
+  if (!curve.pressed.empty()) {
+    return travel < curve.compression ? Shape{curve.compression - travel, -1, 0} : Shape{};
+  }
   if (curve.given.empty() || travel >= curve.length()) {
     return {};
   }
@@ -42,7 +45,31 @@ Shape CalcShape(const GivingCurve& curve, double travel) noexcept {
           (before - 2 * middle + after) / (h * h)};
 }
 
+/** Force of what is pressed together, and its slope. */
+struct PressedForce {
+  double force{0};  // [N]
+  double rise{0};   // [N/m]
+};
+
+/** @pre 0 < given, and the table has two entries at least. Beyond its place the last slope goes on,
+ where it rises. */
+PressedForce CalcPressed(const GivingCurve& curve, double given) noexcept {
+  const std::size_t last = curve.pressed.size() - 1;
+  const double step = curve.compression / static_cast<double>(last);
+  const double along = given / step;
+  if (along >= static_cast<double>(last)) {
+    const double rise = std::max(0.0, (curve.pressed[last] - curve.pressed[last - 1]) / step);
+    return {curve.pressed[last] + rise * (given - curve.compression), rise};
+  }
+  const auto i = static_cast<std::size_t>(along);
+  const double rise = (curve.pressed[i + 1] - curve.pressed[i]) / step;
+  return {curve.pressed[i] + rise * (given - static_cast<double>(i) * step), rise};
+}
+
 double CalcAcross(const GivingCurve& curve, double given) noexcept {
+  if (!curve.pressed.empty()) {
+    return given > 0 ? CalcPressed(curve, given).force : 0;
+  }
   return curve.squeezed ? fits::CalcSqueezeForce(*curve.squeezed, given) : curve.stiffness * given;
 }
 
@@ -64,6 +91,10 @@ GivingLoad CalcGivingLoad(const GivingCurve& curve, double travel) noexcept {
   const Shape shape = CalcShape(curve, travel);
   if (!(shape.given > 0)) {
     return {};
+  }
+  if (!curve.pressed.empty()) {
+    const PressedForce pressed = CalcPressed(curve, shape.given);
+    return {pressed.force, pressed.rise, 0, 0};
   }
   const double across = CalcAcross(curve, shape.given);
   const double rise =
@@ -91,7 +122,7 @@ double CalcGivingEnergy(const GivingCurve& curve, double travel) {
 GivingPeak CalcGivingPeak(const GivingCurve& curve) {
   constexpr int kPerPoint = 8;  // The slope is linear between points: a choice.
   GivingPeak peak;
-  const int count = kPerPoint * static_cast<int>(curve.given.size() + 1);
+  const int count = kPerPoint * static_cast<int>(curve.given.size() + curve.pressed.size() + 1);
   for (int i = 0; i <= count; ++i) {
     const GivingLoad load = CalcGivingLoad(curve, curve.length() * i / std::max(1, count));
     peak.in = std::max(peak.in, load.spring + load.in);

@@ -7,8 +7,9 @@
 
 namespace hvas::haptics {
 
-/** How far a part gives along the straight way to its place, or lets another one pass, and what
- that takes. The curve of how far it gives is a quadratic B-spline, so its slope has no jumps. */
+/** How far a part gives along the straight way to its place, or lets another one pass, or is
+ pressed together there, and what that takes. The curve of how far it gives is a quadratic B-spline,
+ so its slope has no jumps. */
 struct GivingCurve {
   /** Force across the way for each metre that it gives: of an arm, or of an open ring [N/m]. */
   double stiffness{0};
@@ -18,13 +19,17 @@ struct GivingCurve {
   /** Control points from its place outwards, >= 0 [m]; behind the first it stays the same, beyond
    the last it does not give. */
   std::vector<double> given;
+  /** Force of a part that is pressed together along the way, at equal steps from no compression to
+   that in its place [N]; linear between them. Empty: it gives across the way. */
+  std::vector<double> pressed;
+  double compression{0};  ///< How far it is pressed together in its place [m].
 
   /** Distance from its place to where it begins to give [m]. */
   [[nodiscard]] double length() const noexcept {
-    return (static_cast<double>(given.size()) + 0.5) * spacing;
+    return pressed.empty() ? (static_cast<double>(given.size()) + 0.5) * spacing : compression;
   }
 
-  /** How far it gives [m] at a distance from its place [m]. RT-safe. */
+  /** How far it gives, or is pressed together [m], at a distance from its place [m]. RT-safe. */
   [[nodiscard]] double CalcGiven(double travel) const noexcept;
 };
 
@@ -44,7 +49,7 @@ struct GivingLoad {
  P (mu + m) / (1 - mu m) to slide in (Bayer MaterialScience, Snap-Fit Joints for Plastics). That is
  the elastic part P m, which is the slope of the energy in it, and friction P mu (1 + m^2) / (1 - mu
  m); outwards m has the other sign. So friction always takes energy, and the elastic part gives back
- what it was given. RT-safe. */
+ what it was given. What is pressed together along the way has m = 1 and no friction. RT-safe. */
 [[nodiscard]] GivingLoad CalcGivingLoad(const GivingCurve& curve, double travel) noexcept;
 
 /** Elastic energy in it at a distance from its place [J]; by Simpson's rule over how far it gives.

@@ -120,7 +120,10 @@ bool IsFlexible(const Product& product, OccurrenceId id) {
     return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kSnapHook ||
            kind == product::FlexibleKind::kRubber;
   };
-  return is_bent(product.part_of(id).name) || is_bent(product.occurrences[id.index()].name);
+  const product::ElasticPart* elastic = product::FindElastic(product, id);
+  const bool is_squeezed = elastic != nullptr && !IsPressedAlongAxis(elastic->kind);
+  return is_squeezed || is_bent(product.part_of(id).name) ||
+         is_bent(product.occurrences[id.index()].name);
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ Fit ProposeFit(const FitEvidence& evidence) {
   }
   if (evidence.is_flexible) {
     return {is_larger ? FitKind::kPassage : FitKind::kInsert, "", nominal, true,
-            "a cable, hose or clip gives"};
+            "a cable, hose, clip, slit pin or rubber gives"};
   }
   if (evidence.shaft_part == FastenerKind::kNut && choice.is_wide) {
     return {FitKind::kInsert, "", d, true,

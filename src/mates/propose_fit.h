@@ -15,7 +15,7 @@ struct FitEvidence {
   FastenerKind hole_part{FastenerKind::kNone};
   FastenerKind shaft_part{FastenerKind::kNone};
   bool nut_on_shaft{false};  ///< A nut sits on the same shaft: other holes are through holes.
-  bool is_flexible{false};   ///< A cable, hose or clip: what gives has no fit.
+  bool is_flexible{false};   ///< A cable, hose, clip, slit pin or rubber: what gives has no fit.
   bool is_toothed{false};    ///< A hub on the teeth of a shaft, such as a horn on its spline.
   bool is_rivet{false};      ///< The shaft has the name of a rivet.
   bool is_hollow{false};     ///< The shaft has a bore all along: a ring, bushing or insert.
@@ -35,7 +35,7 @@ struct FitEvidence {
  | hole not larger | screw or threaded shaft, no nut behind it | thread |
  | hole smaller | screw | thread |
  | any | teeth on one side or both | insert |
- | hole larger | flexible (a cable, hose or clip) | passage |
+ | hole larger | flexible (a cable, hose, clip, slit pin or rubber) | passage |
  | hole not larger | flexible | insert |
  | play of a proposed code, or less | nut or insert as the shaft | insert |
  | more play than the widest code | a shaft that may pass | passage |

@@ -48,6 +48,10 @@ constexpr double kLargestDistance_mm = 100'000;
 constexpr double kLargestAngle_deg = 180;
 constexpr double kLargestCompliance_um = 1000;  // [um/N]: softer than any solid part.
 constexpr double kLargestGive_mm = 1000;        // [mm]: what gives more is no part to put in.
+constexpr double kMostCoils = 10'000;           // More wire than a part has: a choice.
+constexpr double kPascalsPerMegapascal = 1e6;   // By definition.
+constexpr double kStiffest_mpa = 2e6;           // [MPa]: diamond has 1.1e6.
+constexpr double kStiffest_n_per_mm = 10e6;     // [N/mm]: stiffer than a block of steel of 0.1 m.
 constexpr double kMostFaces = 4294967294;
 constexpr std::size_t kMostPlaces = 1000;  // of a measured diameter: one each 0.1 mm of 100 mm
 
@@ -95,7 +99,7 @@ constexpr std::array kDocumentKeys{
     Of(Type::kList, "fits", false),     Of(Type::kList, "mates", false),
     Of(Type::kList, "removed", false),  Of(Type::kList, "relations", false),
     Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false),
-    Of(Type::kList, "flexible", false)};
+    Of(Type::kList, "flexible", false), Of(Type::kList, "elastic", false)};
 
 constexpr std::array kFitKeys{Text("mate"),
                               Text("hole"),
@@ -139,6 +143,23 @@ constexpr std::array kApartKeys{Text("unit", true), Note()};
 
 constexpr std::array kFlexibleKeys{Text("part", true),
                                    Needed(Number("allowance_mm", 0, kLargestGive_mm)), Note()};
+
+constexpr std::array<std::string_view, 7> kElasticNames{
+    "coil_spring", "disc_spring", "lock_washer", "leaf_spring", "gasket", "slit_pin", "sleeve"};
+static_assert(kElasticNames.size() == static_cast<std::size_t>(product::ElasticKind::kSleeve) + 1,
+              "a kind of elastic part has no name here");
+
+constexpr std::array kElasticKeys{Text("part", true),
+                                  Choice("kind", kElasticNames, false),
+                                  Diameter("free_length_mm"),
+                                  Diameter("free_diameter_mm"),
+                                  Diameter("thickness_mm"),
+                                  Diameter("outer_diameter_mm"),
+                                  Diameter("inner_diameter_mm"),
+                                  Number("active_coils", 0, kMostCoils, true),
+                                  Number("modulus_mpa", 0, kStiffest_mpa, true),
+                                  Number("stiffness_n_per_mm", 0, kStiffest_n_per_mm, true),
+                                  Note()};
 
 /** One object of the file with its place in it. */
 struct Place {
@@ -455,6 +476,35 @@ Result<StatedFlexible> ReadFlexible(const ordered_json& item, const Place& place
                         place.Where()};
 }
 
+Result<StatedElastic> ReadElastic(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kElastic, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  StatedElastic stated;
+  stated.part = TextAt(item, "part");
+  if (const std::string kind = TextAt(item, "kind"); !kind.empty()) {
+    stated.kind = static_cast<product::ElasticKind>(
+        std::find(kElasticNames.begin(), kElasticNames.end(), kind) - kElasticNames.begin());
+  }
+  const auto length = NumberAt(item, "free_length_mm", units::kMetresPerMillimetre);
+  const auto diameter = NumberAt(item, "free_diameter_mm", units::kMetresPerMillimetre);
+  if (length && diameter) {
+    return Fail(ErrorCode::kInvalid,
+                "\"free_length_mm\" is for a part that is pressed along its axis, and "
+                "\"free_diameter_mm\" for one that its hole presses: no part has both",
+                place.Where("free_diameter_mm"), "remove one of the two");
+  }
+  stated.free_size = length ? length : diameter;
+  stated.thickness = NumberAt(item, "thickness_mm", units::kMetresPerMillimetre);
+  stated.outer = NumberAt(item, "outer_diameter_mm", units::kMetresPerMillimetre);
+  stated.inner = NumberAt(item, "inner_diameter_mm", units::kMetresPerMillimetre);
+  stated.coils = NumberAt(item, "active_coils", 1);
+  stated.modulus = NumberAt(item, "modulus_mpa", kPascalsPerMegapascal);
+  stated.stiffness = NumberAt(item, "stiffness_n_per_mm", 1 / units::kMetresPerMillimetre);
+  stated.where = place.Where();
+  return stated;
+}
+
 /** Reads the list under `key`, if it is there; `name` is what its entries are called. */
 template <typename Entry, typename Read>
 Result<void> ReadList(const Place& top, const char* key, const char* name, Read read,
@@ -511,6 +561,8 @@ std::span<const SideFileKey> KeysOf(SideFileObject object) {
       return kApartKeys;
     case SideFileObject::kFlexible:
       return kFlexibleKeys;
+    case SideFileObject::kElastic:
+      return kElasticKeys;
     case SideFileObject::kRemoved:
       break;
   }
@@ -568,6 +620,9 @@ Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::pat
   }
   if (read) {
     read = ReadList(top, "flexible", "flexible", ReadFlexible, &result.flexible);
+  }
+  if (read) {
+    read = ReadList(top, "elastic", "elastic", ReadElastic, &result.elastic);
   }
   if (!read) {
     return Unexpected(read.error());

@@ -30,7 +30,8 @@ enum class SideFileObject {
   kRelation,
   kContact,
   kApart,
-  kFlexible
+  kFlexible,
+  kElastic
 };
 
 enum class SideFileType {
@@ -116,6 +117,21 @@ struct StatedFlexible {
   std::string where;
 };
 
+/** "elastic": what pushes back where another part presses on it, and how large it is. What is not
+ stated is measured from the part. */
+struct StatedElastic {
+  std::string part;                          ///< Occurrences of this name or path.
+  std::optional<product::ElasticKind> kind;  ///< Found from name and form where it is not stated.
+  std::optional<double> free_size;           ///< Length, or diameter, with nothing on it [m].
+  std::optional<double> thickness;           ///< Thickness of wire, disc, ring, strip or wall [m].
+  std::optional<double> outer;               ///< Outer diameter [m].
+  std::optional<double> inner;               ///< Inner diameter [m].
+  std::optional<double> coils;               ///< Active coils.
+  std::optional<double> modulus;             ///< Young's modulus [Pa].
+  std::optional<double> stiffness;           ///< Force for each metre, in place of a formula [N/m].
+  std::string where;
+};
+
 struct SideFile {
   std::filesystem::path path;
   std::vector<FitEntry> fits;
@@ -125,6 +141,7 @@ struct SideFile {
   std::vector<StatedContact> contacts;
   std::vector<product::KeptApart> apart;  ///< What is not to be welded.
   std::vector<StatedFlexible> flexible;
+  std::vector<StatedElastic> elastic;
 };
 
 /** Where a CAD file's side file stands: "pump.step" has "pump.hvas.json" beside it. */

@@ -97,7 +97,7 @@ void Visit(A& archive, T& value) {
 template <typename A, Is<Product> T>
 void Visit(A& archive, T& value) {
   auto& [name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W,
-         removed_mates, placement, header, relations, contact_pairs, flexible] = value;
+         removed_mates, placement, header, relations, contact_pairs, flexible, elastic] = value;
   archive(name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W);
 }
 

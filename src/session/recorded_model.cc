@@ -1,6 +1,7 @@
 #include "session/recorded_model.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,6 +21,7 @@ constexpr const char* kPairs = "pairs";
 constexpr const char* kSteps = "steps";
 constexpr const char* kFingerprint = "fingerprint";
 constexpr const char* kFlexible = "flexible";  // Pairs of occurrence and allowance [m].
+constexpr const char* kElastic = "elastic";  // Occurrence, kind and sizes in SI, in a fixed order.
 
 /** Of what the ticks see of a model: equal models have equal ones. */
 std::string CalcFingerprint(const simulation::Model& model) {
@@ -45,6 +47,11 @@ std::string CalcFingerprint(const simulation::Model& model) {
     digest.AddInt(give.other.value());
     digest.AddDouble(give.depth);
     digest.AddDouble(give.curve ? haptics::CalcGivingPeak(*give.curve).in : 0.0);
+  }
+  for (const simulation::PressedPair& press : model.presses) {
+    digest.AddInt(press.moved.value());
+    digest.AddDouble(press.compression);
+    digest.AddDouble(press.force);
   }
   for (const simulation::FaceRelief& relief : model.sequence.reliefs) {
     digest.AddInt(relief.occurrence.value());
@@ -86,6 +93,60 @@ bool ReadFlexible(const Json& json, product::Product* product) {
   return list.is_array();
 }
 
+/** The sizes of a part that pushes back, in the order of the record. */
+template <typename Part>
+auto SizesOf(Part& part) {
+  return std::array{&part.axis_B.x(),   &part.axis_B.y(),   &part.axis_B.z(), &part.centre_B.x(),
+                    &part.centre_B.y(), &part.centre_B.z(), &part.length,     &part.outer,
+                    &part.inner,        &part.thickness,    &part.coils,      &part.area,
+                    &part.free_area,    &part.free_size,    &part.modulus,    &part.poisson_ratio,
+                    &part.stiffness};
+}
+
+Json MakeElasticJson(const product::Product& product) {
+  Json list = Json::array();
+  for (const product::ElasticPart& part : product.elastic) {
+    Json entry{part.occurrence.value(), static_cast<int>(part.kind)};
+    for (const double* size : SizesOf(part)) {
+      entry.push_back(*size);
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/** Takes the parts that push back of a record into its product; false where they are none. Records
+ of products without any, and older ones, have no list. */
+bool ReadElastic(const Json& json, product::Product* product) {
+  if (!json.contains(kElastic)) {
+    return true;
+  }
+  const Json& list = json[kElastic];
+  for (const Json& entry : list) {
+    product::ElasticPart part;
+    const auto sizes = SizesOf(part);
+    const bool is_entry = entry.is_array() && entry.size() == 2 + sizes.size() &&
+                          entry[0].is_number_unsigned() &&
+                          entry[0].get<std::uint64_t>() < product->occurrences.size() &&
+                          entry[1].is_number_unsigned() &&
+                          entry[1].get<std::uint64_t>() <=
+                              static_cast<std::uint64_t>(product::ElasticKind::kSleeve) &&
+                          std::all_of(entry.begin() + 2, entry.end(),
+                                      [](const Json& size) { return size.is_number(); });
+    if (!is_entry) {
+      return false;
+    }
+    part.occurrence = product::OccurrenceId(entry[0].get<std::uint32_t>());
+    part.kind = static_cast<product::ElasticKind>(entry[1].get<int>());
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      *sizes[i] = entry[2 + i].get<double>();
+    }
+    part.reason = "the record";
+    product->elastic.push_back(std::move(part));
+  }
+  return list.is_array();
+}
+
 std::optional<fits::PairChoice> FindPairChoice(const std::string& name) {
   const auto found = std::find(fits::kPairChoices.begin(), fits::kPairChoices.end(), name);
   return found == fits::kPairChoices.end()
@@ -116,11 +177,14 @@ record::Meta MakeModelMeta(const simulation::Model& model) {
 
 void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
   recorder->AddAttachment({kProductAttachment, product::SerialiseProduct(*model.product)});
-  const Json json{{kSeed, model.seed},
-                  {kPairs, fits::ToString(model.pairs)},
-                  {kSteps, MakeStepsJson(model.sequence.steps)},
-                  {kFlexible, MakeFlexibleJson(*model.product)},
-                  {kFingerprint, CalcFingerprint(model)}};
+  Json json{{kSeed, model.seed},
+            {kPairs, fits::ToString(model.pairs)},
+            {kSteps, MakeStepsJson(model.sequence.steps)},
+            {kFlexible, MakeFlexibleJson(*model.product)},
+            {kFingerprint, CalcFingerprint(model)}};
+  if (!model.product->elastic.empty()) {
+    json[kElastic] = MakeElasticJson(*model.product);
+  }
   const std::string text = json.dump();
   const auto bytes = std::as_bytes(std::span(text));
   recorder->AddAttachment({kModelAttachment, {bytes.begin(), bytes.end()}});
@@ -236,6 +300,9 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   }
   if (json.is_object() && !ReadFlexible(json, &*product)) {
     fields.Refuse(kFlexible);
+  }
+  if (json.is_object() && !ReadElastic(json, &*product)) {
+    fields.Refuse(kElastic);
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,

@@ -165,9 +165,9 @@ std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
 
 std::string AssemblyRun::MakeNote(const PartResult& result) const {
   std::string note;
-  for (const std::string& item :
-       {DescribeAllowances(result.allowances), DescribeAside(result.occurrence),
-        ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
+  for (const std::string& item : {DescribeAllowances(result.allowances),
+                                  DescribePresses(result.presses), DescribeAside(result.occurrence),
+                                  ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
     note += (note.empty() || item.empty() ? "" : "; ") + item;
   }
   return note;
@@ -183,6 +183,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   result.reason = reason;
   if (step.kind != SequenceStep::Kind::kAside) {
     result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
+    result.presses = was_seated ? ListPresses(step) : std::vector<PartPress>();
   }
   result.passage = passages_.passage(step.occurrence);
   result.note = MakeNote(result);

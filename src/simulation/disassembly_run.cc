@@ -72,7 +72,9 @@ void DisassemblyRun::Finish(const Removal& removal, const std::string& reason) {
   AddHold(id);
   Update(id);
   ResultOf(id).reason = reason;
-  ResultOf(id).note = DescribeAllowances(ListPartAllowances(removal.step));
+  const std::string allowed = DescribeAllowances(ListPartAllowances(removal.step));
+  const std::string pressed = DescribePresses(ListPresses(removal.step));
+  ResultOf(id).note = allowed + (allowed.empty() || pressed.empty() ? "" : "; ") + pressed;
   for (const OccurrenceId member : removal.step.members) {
     Update(member);
     ResultOf(member).reason = reason.empty() ? reason : "its subassembly " + reason;

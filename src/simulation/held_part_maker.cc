@@ -14,6 +14,7 @@
 #include "mates/prismatic_fits.h"
 #include "mates/resolve.h"
 #include "mates/thread_joints.h"
+#include "simulation/bolt_circle.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/tool_reach.h"
 
@@ -151,6 +152,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   held->allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
   AddGives(id, held.get());
   AddMembers(step, held.get());
+  AddPresses(step, held.get());
   held->bodies = {held->body};
   for (const haptics::HeldMember& member : held->members) {
     held->bodies.push_back(member.body);
@@ -233,7 +235,10 @@ void HeldPartMaker::AddThreads(haptics::HeldPart* held) const {
     mate.thread = MakeHeldThread(*joint);
     const std::optional<double> clamped = FindClampedLength(*held, mate);
     if (clamped && joint->thread != nullptr && joint->tightening.preload > 0) {
-      mate.thread->stiffness = fits::CalcJointStiffness(*joint->thread, *clamped);
+      const product::Mate& drawn = model_.product->mates[mate.id.index()];
+      mate.thread->stiffness = SoftenByGaskets(*model_.product, drawn.b.occurrence,
+                                               fits::CalcJointStiffness(*joint->thread, *clamped),
+                                               joint->tightening.preload);
       mate.thread->preload = joint->tightening.preload;
     }
   }
@@ -290,6 +295,22 @@ void HeldPartMaker::AddGives(OccurrenceId id, haptics::HeldPart* held) const {
     const OccurrenceId partner = give.flexible == id ? give.other : give.flexible;
     if (give.moved == id && give.curve && parts_[partner.index()].placement == Placement::kPlaced) {
       held->gives.push_back({give.curve, std::max(give.width, give.depth)});
+    }
+  }
+}
+
+void HeldPartMaker::AddPresses(const SequenceStep& step, haptics::HeldPart* held) const {
+  if (step.kind != SequenceStep::Kind::kInsert && step.kind != SequenceStep::Kind::kRemove) {
+    return;
+  }
+  const auto is_there = [&](OccurrenceId id) {
+    return parts_[id.index()].placement == Placement::kPlaced || id == step.occurrence ||
+           std::find(step.members.begin(), step.members.end(), id) != step.members.end();
+  };
+  for (const PressedPair& pair : model_.presses) {
+    if (pair.moved == step.occurrence && is_there(pair.support) &&
+        std::all_of(pair.parts.begin(), pair.parts.end(), is_there)) {
+      held->gives.push_back({pair.curve, pair.compression});
     }
   }
 }

@@ -44,6 +44,8 @@ class HeldPartMaker {
   void AddDrives(const SequenceStep& step, haptics::HeldPart* held) const;
   /** Adds what gives on its way against parts in their places. */
   void AddGives(product::OccurrenceId id, haptics::HeldPart* held) const;
+  /** Adds what the part presses together in its place. @pre Its members are known. */
+  void AddPresses(const SequenceStep& step, haptics::HeldPart* held) const;
   void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
   /** Adds mates with parts of this placement.
    @param target  Null: any of them; else these alone. */

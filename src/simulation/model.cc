@@ -295,6 +295,14 @@ haptics::MateFaces CollectMateFaces(const product::Part& part,
 
 namespace {
 
+std::vector<PressedPair> ListAllPresses(const Product& product, const Sequence& sequence) {
+  std::vector<PressedPair> presses = ListPressedPairs(product, sequence);
+  for (PressedPair& pair : ListSqueezedPairs(product, sequence)) {
+    presses.push_back(std::move(pair));
+  }
+  return presses;
+}
+
 /** Makes the boxes that stand for the shapes that are not there. Errors: those of MakeBoxShape. */
 Result<PartShapes> MakeMissingBoxes(const Product& product, const PartShapes& shapes) {
   PartShapes boxes(shapes.size());
@@ -425,6 +433,7 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
   if (const auto ordered = PutInOrder(options, model.get()); !ordered) {
     return Unexpected(ordered.error());
   }
+  model->presses = ListAllPresses(*product, model->sequence);
   MakeFits(model.get(), diagnostics);
   GiveActualFaces(model.get(), diagnostics);
   RelieveWays(input.stop, model.get(), diagnostics);
@@ -533,6 +542,7 @@ std::shared_ptr<const Model> ChangeOrder(const Model& model, std::vector<Sequenc
                                          const std::stop_token& stop, Diagnostics* diagnostics) {
   auto changed = std::make_shared<Model>(model);
   changed->sequence.steps = std::move(steps);
+  changed->presses = ListAllPresses(*changed->product, changed->sequence);
   RelieveWays(stop, changed.get(), diagnostics);
   return changed;
 }

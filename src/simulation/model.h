@@ -20,6 +20,7 @@
 #include "mates/thread_joints.h"
 #include "product/drive_forms.h"
 #include "product/product.h"
+#include "simulation/pressed_pairs.h"
 #include "simulation/sequence.h"
 
 namespace hvas::simulation {
@@ -96,6 +97,7 @@ struct Model {
   std::vector<ModelMate> mates;                        ///< Indexed by MateId.
   std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
   Sequence sequence;
+  std::vector<PressedPair> presses;  ///< What parts press together on their way, in this order.
   Accessories accessories;
   double table_z{0};            ///< [m]
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.

@@ -232,6 +232,37 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
   return text;
 }
 
+std::vector<PartPress> PartRun::ListPresses(const SequenceStep& step) const {
+  std::vector<PartPress> presses;
+  for (const PressedPair& pair : model().presses) {
+    if (pair.moved == step.occurrence) {
+      presses.push_back({pair.parts, pair.compression, pair.force, pair.is_radial, pair.source});
+    }
+  }
+  return presses;
+}
+
+std::string PartRun::DescribePresses(const std::vector<PartPress>& presses) const {
+  const auto hardest =
+      std::max_element(presses.begin(), presses.end(),
+                       [](const PartPress& a, const PartPress& b) { return a.force < b.force; });
+  if (hardest == presses.end()) {
+    return {};
+  }
+  const std::string more =
+      presses.size() > 1 ? fmt::format(", and {} more", presses.size() - 1) : "";
+  if (hardest->is_radial) {
+    return fmt::format("{} is squeezed by {:.2f} mm all around: {:.3g} N to push it in ({}){}",
+                       PathOf(hardest->parts.front()), units::ToMm(hardest->compression),
+                       hardest->force, hardest->source, more);
+  }
+  const std::size_t behind = hardest->parts.size() - 1;
+  return fmt::format("presses {}{} together by {:.2f} mm: {:.3g} N ({}){}",
+                     PathOf(hardest->parts.front()),
+                     behind > 0 ? fmt::format(" and {} behind it", behind) : "",
+                     units::ToMm(hardest->compression), hardest->force, hardest->source, more);
+}
+
 std::size_t PartRun::CountNeighboursInPlace(const SequenceStep& step) const {
   const Neighbours& neighbours = model().sequence.neighbours;
   const auto is_own = [&step](OccurrenceId id) {

@@ -84,6 +84,19 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
   for (const PartAllowance& allowance : part.allowances) {
     json["allowances"].push_back(ToJson(model, allowance));
   }
+  if (!part.presses.empty()) {
+    json["presses"] = nlohmann::ordered_json::array();
+    for (const simulation::PartPress& press : part.presses) {
+      nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+      for (const product::OccurrenceId id : press.parts) {
+        parts.push_back(PathOf(model, id));
+      }
+      json["presses"].push_back({{"parts", std::move(parts)},
+                                 {"compression_mm", units::ToMm(press.compression)},
+                                 {"force_n", press.force},
+                                 {"source", press.source}});
+    }
+  }
   return json;
 }
 

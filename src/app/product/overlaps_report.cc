@@ -10,6 +10,7 @@
 #include "app/output/text_table.h"
 #include "base/units.h"
 #include "mates/drawn_volumes.h"
+#include "mates/elastic_parts.h"
 #include "product/flexible.h"
 
 namespace hvas::app {
@@ -17,6 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using mates::SharedVolume;
+using product::ElasticPart;
 using product::FlexiblePart;
 using product::Product;
 using units::ToMm;
@@ -74,6 +76,49 @@ void PrintFlexible(const Product& product, const std::vector<FlexiblePart>& part
   limit.PrintRest();
 }
 
+void PrintElastic(const Product& product, const std::vector<ElasticPart>& parts, bool is_all) {
+  fmt::print("\nParts that push back, with the sizes of their force\n");
+  TextTable table({"part", "kind", "by"}, 1);
+  ListLimit limit(is_all);
+  for (const ElasticPart& part : parts) {
+    if (limit.Next()) {
+      table.Add({Shorten(product.occurrences[part.occurrence.index()].path, 36),
+                 ToString(part.kind), Shorten(part.reason, 28)},
+                mates::DescribeElastic(part));
+    }
+  }
+  fmt::print("{}", table.ToText(2));
+  limit.PrintRest();
+}
+
+std::vector<ElasticPart> ListElastic(const Product& product, const Selection& selection) {
+  std::vector<ElasticPart> parts = product.elastic;
+  std::erase_if(parts, [&](const ElasticPart& part) { return !selection.Has(part.occurrence); });
+  return parts;
+}
+
+Json ToJson(const ElasticPart& part) {
+  constexpr double kSmall = 1e-6;  // [m]: the rate is that of the first micrometre. A choice.
+  const auto pressed = mates::MakePressedPart(part);
+  const double compression = mates::CalcCompression(part);
+  return {{"occurrence", part.occurrence.value()},
+          {"kind", ToString(part.kind)},
+          {"length_mm", ToMm(part.length)},
+          {"outer_mm", ToMm(part.outer)},
+          {"inner_mm", ToMm(part.inner)},
+          {"thickness_mm", ToMm(part.thickness)},
+          {"active_coils", part.coils},
+          {"area_mm2", part.area / (units::kMetresPerMillimetre * units::kMetresPerMillimetre)},
+          {"free_size_mm", ToMm(part.free_size)},
+          {"youngs_modulus_pa", part.modulus},
+          {"stiffness_n_per_m",
+           pressed ? Json(fits::CalcPressForce(*pressed, kSmall) / kSmall) : Json()},
+          {"compression_mm", ToMm(compression)},
+          {"force_n", pressed ? Json(fits::CalcPressForce(*pressed, compression)) : Json()},
+          {"reason", part.reason},
+          {"description", mates::DescribeElastic(part)}};
+}
+
 std::vector<FlexiblePart> ListFlexible(const Product& product, const Selection& selection) {
   std::vector<FlexiblePart> parts = product.flexible;
   std::erase_if(parts, [&](const FlexiblePart& part) {
@@ -102,6 +147,10 @@ void AddOverlaps(const Product& product, const Selection& selection, Json* json)
                         {"allowance_mm", ToMm(part.allowance)},
                         {"reason", part.reason}});
   }
+  Json& elastic = (*json)["elastic_parts"] = Json::array();
+  for (const ElasticPart& part : ListElastic(product, selection)) {
+    elastic.push_back(ToJson(part));
+  }
 }
 
 void PrintOverlaps(const Product& product, const Selection& selection, bool is_all) {
@@ -112,6 +161,10 @@ void PrintOverlaps(const Product& product, const Selection& selection, bool is_a
   const std::vector<FlexiblePart> flexible = ListFlexible(product, selection);
   if (!flexible.empty()) {
     PrintFlexible(product, flexible, is_all);
+  }
+  const std::vector<ElasticPart> elastic = ListElastic(product, selection);
+  if (!elastic.empty()) {
+    PrintElastic(product, elastic, is_all);
   }
 }
 

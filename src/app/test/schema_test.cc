@@ -130,6 +130,7 @@ TEST(SideFileSchema, HasTheKeysTypesAndRangesOfTheReader) {
   ExpectSameKeys(schema, schema["$defs"]["contact"], SideFileObject::kContact);
   ExpectSameKeys(schema, schema["$defs"]["apart"], SideFileObject::kApart);
   ExpectSameKeys(schema, schema["$defs"]["flexible"], SideFileObject::kFlexible);
+  ExpectSameKeys(schema, schema["$defs"]["elastic"], SideFileObject::kElastic);
 }
 
 // The compiler names the sources that lack a kind of mate; this test names the other files.

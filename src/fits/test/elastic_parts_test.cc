@@ -92,5 +92,51 @@ TEST(OpenRing, OpensAsTheSumOfItsBendingMoments) {
   EXPECT_NEAR(CalcSpreadStiffness(ring), force / growth, 1e-6 * force / growth);
 }
 
+// A pin of ISO 8752, 4 mm, closed by 0.01 mm bends elastically; by its 0.25 mm its back yields,
+// where the moments of the pressure, summed up from the slit on, are the plastic moment.
+TEST(SlitPin, YieldsAtItsBackWhereItsHoleClosesIt) {
+  const SlitPin pin{4.5 * kMm, 0.8 * kMm, 20 * kMm, 206e9, 1.4e9};
+  const double r = 1.85 * kMm;
+  EXPECT_NEAR(CalcSlitPinForce(pin, 0.01 * kMm),
+              CalcSpreadStiffness({r, pin.wall, pin.length, pin.modulus}) * 0.01 * kMm, 1e-6);
+  const double force = CalcSlitPinForce(pin, 0.25 * kMm);
+  const double line = force / (2 * std::numbers::pi * r);  // Along the circumference [N/m].
+  double moment = 0;
+  constexpr int kSteps = 10'000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double phi = std::numbers::pi * (i + 0.5) / kSteps;  // From the slit to the back.
+    moment += line * r * r * std::sin(phi) * std::numbers::pi / kSteps;
+  }
+  const double plastic = pin.yield * pin.length * pin.wall * pin.wall / 4;
+  EXPECT_NEAR(moment, plastic, 1e-6 * plastic);
+  EXPECT_EQ(CalcSlitPinForce(pin, -1), 0);
+}
+
+// A thin and long sleeve is a wall between plates; its bulk limits it, and sliding along it shears
+// it.
+TEST(RubberSleeve, IsAWallOfRubberBetweenPlates) {
+  const RubberSleeve sleeve{10 * kMm, 14 * kMm, 20 * kMm, 5e6};
+  const double wall = 4 * kMm;
+  const double shape = 20.0 / 8.0;
+  const double area = 2 * std::numbers::pi * 12 * kMm * 20 * kMm;
+  const double block = 4.0 / 3.0 * 5e6 * (1 + shape * shape) * area / wall;
+  EXPECT_LT(CalcSleeveStiffness(sleeve), block);
+  EXPECT_NEAR(CalcSleeveStiffness(sleeve), block, 0.03 * block);
+  // Shear stress F / (2 pi r L) over G, summed up from the inside outwards.
+  double way = 0;
+  constexpr int kSteps = 10'000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double r = 10 * kMm + wall * (i + 0.5) / kSteps;
+    way += 1 / (2 * std::numbers::pi * r * 20 * kMm) / (5e6 / 3) * wall / kSteps;
+  }
+  EXPECT_NEAR(CalcSleeveShearStiffness(sleeve), 1 / way, 1e-6 / way);
+  // Free on one side, it is a ring under hoop tension, and much softer.
+  EXPECT_LT(CalcSleeveHoopStiffness(sleeve), 0.2 * CalcSleeveStiffness(sleeve));
+  const double growth = 0.1 * kMm;
+  const double tension = 5e6 * 20 * kMm * wall * growth / (12 * kMm);
+  EXPECT_NEAR(CalcSleeveHoopStiffness(sleeve) * growth, 2 * std::numbers::pi * tension,
+              1e-9 * tension);
+}
+
 }  // namespace
 }  // namespace hvas::fits

@@ -3,6 +3,7 @@
 #include "haptics/giving_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "fits/pressed_parts.h"
 #include "haptics/test/rig.h"
 
 namespace hvas::haptics {
@@ -75,10 +77,50 @@ TEST(GivingCurve, IsOfAPotential) {
   }
 }
 
-/** A part on a hook's way in no one's hand, pulled at by a force. */
+/** A disc spring of DIN 2093, A 20, in series with a coil spring, pressed by 2.2 mm in its place.
+ */
+GivingCurve MakePressed() {
+  constexpr double kPressedBy = 2.2e-3;
+  constexpr int kSteps = 128;
+  const std::array<fits::PressedPart, 2> parts{
+      fits::DiscSpring{20e-3, 10.2e-3, 1.1e-3, 0.45e-3, 206e9, 0.3},
+      fits::CoilSpring{2e-3, 14e-3, 5, 79e9}};
+  GivingCurve curve;
+  curve.pressed = fits::MakePressTable(parts, kPressedBy, kSteps);
+  curve.compression = kPressedBy;
+  return curve;
+}
+
+TEST(GivingCurve, OfWhatIsPressedIsOfAPotentialAndHasNoFriction) {
+  const GivingCurve curve = MakePressed();
+  constexpr double kStep = 1e-7;
+  EXPECT_EQ(curve.length(), curve.compression);
+  EXPECT_EQ(CalcGivingLoad(curve, curve.length()).spring, 0);
+  EXPECT_EQ(CalcGivingPeak(curve).in, curve.pressed.back());
+  EXPECT_EQ(CalcGivingPeak(curve).out, 0);
+  double last = CalcGivingLoad(curve, -0.1e-3).spring;
+  EXPECT_GT(last, curve.pressed.back());  // Pushed beyond its place, it pushes harder.
+  for (double travel = -0.1e-3; travel < 1.1 * curve.compression; travel += 3.7e-6) {
+    const GivingLoad load = CalcGivingLoad(curve, travel);
+    EXPECT_LE(load.spring, last);
+    EXPECT_LT(last - load.spring, 1);  // It has no jump.
+    last = load.spring;
+    ASSERT_NEAR(
+        load.spring,
+        (CalcGivingEnergy(curve, travel - kStep) - CalcGivingEnergy(curve, travel + kStep)) /
+            (2 * kStep),
+        1e-3 * load.spring + 1e-2);
+    EXPECT_EQ(load.in, 0);
+    EXPECT_EQ(load.out, 0);
+  }
+}
+
+/** A part on the way of what gives in no one's hand, pulled at by a force. */
 struct PartOnWay {
-  explicit PartOnWay(double friction, double start)
-      : rows(MakeForceMap(device)), curve(std::make_shared<const GivingCurve>(MakeHook(friction))) {
+  PartOnWay(double friction, double start) : PartOnWay(MakeHook(friction), start) {}
+
+  PartOnWay(GivingCurve given, double start)
+      : rows(MakeForceMap(device)), curve(std::make_shared<const GivingCurve>(std::move(given))) {
     part.mass = 0.05;
     part.gives = {{curve, kUndercut}};
     displayed.part = &part;
@@ -136,6 +178,31 @@ TEST(GivingRows, NeverGiveMoreEnergyThanTheyTook) {
   EXPECT_LT(worst, 1e-9);
 }
 
+// L: the same of springs that are pressed together along the way.
+TEST(GivingRows, PressedSpringsNeverGiveMoreEnergyThanTheyTook) {
+  Random random(7);
+  PartOnWay slider(MakePressed(), 6e-3);
+  double given = 0;
+  double pull = 0;
+  double worst = -1;
+  int inside = 0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    pull += 0.1 * random.Normal() - 0.003 * pull - 2e-3 * (slider.height() - 1e-3);
+    const double before = slider.height();
+    slider.Step(pull);
+    given += pull * (slider.height() - before);
+    worst = std::max(worst, slider.CalcKinetic() - given);
+    inside += slider.height() < slider.curve->length() ? 1 : 0;
+    if (std::abs(slider.height()) > 0.05) {  // It is caught, and put back with what it has lost.
+      slider.displayed.X_WD = Pose(Vec3(0, 0, 6e-3));
+      given -= slider.CalcKinetic();
+      slider.displayed.V = {};
+    }
+  }
+  EXPECT_GT(inside, 100'000);
+  EXPECT_LT(worst, 1e-9);
+}
+
 // Half way up its face, it stays where it is left, and does not creep.
 TEST(GivingRows, StickWhereFrictionHolds) {
   PartOnWay slider(0.7, 4.5e-3);
@@ -177,13 +244,15 @@ TEST(GivingRows, APartThatComesFromAsideMeetsNone) {
 
 /** A hand that presses a block in against the hook, with nothing else in the scene. */
 struct HookRig : testing::HeldRig {
-  explicit HookRig(double friction) : HeldRig(Weightless()) {
+  explicit HookRig(double friction) : HookRig(MakeHook(friction)) {}
+
+  explicit HookRig(GivingCurve curve) : HeldRig(Weightless()) {
     static const auto block = contact::testing::Build(contact::testing::Shaft(5e-3, 20e-3, 20e-6));
     Place(block, Pose(Vec3(0, 0, 0.012)));
     testing::SetMass({{5e-3, 0, 20e-3}}, &part);
     part.X_WB_goal = Pose();
     part.lacks_partners = true;  // It goes through its place, and is not taken from the hand there.
-    part.gives = {{std::make_shared<const GivingCurve>(MakeHook(friction)), kUndercut}};
+    part.gives = {{std::make_shared<const GivingCurve>(std::move(curve)), kUndercut}};
     Take();
   }
 
@@ -224,6 +293,32 @@ TEST(GivingRows, TheTickHasThePublishedForces) {
   const auto out = move(0.02, 4.0);
   EXPECT_NEAR(-out.first, 130.1, 1.5);
   EXPECT_GT(rig.hand->last().X_WD.p().z(), 8e-3);
+}
+
+// In the tick, by a scripted hand: a spring of 28.3 N/mm, the outer one of FOSSEE example 10.19,
+// pushes by 56.5 N in its place, 2 mm in, and the device feels it by the map.
+TEST(GivingRows, TheTickHasTheForceOfAPressedSpring) {
+  constexpr double kPressedBy = 2e-3;
+  GivingCurve curve;
+  const std::array<fits::PressedPart, 1> spring{fits::CoilSpring{6e-3, 36e-3, 10, 81.37e9}};
+  curve.pressed = fits::MakePressTable(spring, kPressedBy, 128);
+  curve.compression = kPressedBy;
+  HookRig rig(curve);
+  rig.hand->Wait(0.3);
+  const ForceMap map = MakeForceMap(rig.options.device);
+  rig.hand->MoveEvenly(Vec3(0, 0, -0.015), 4.0);
+  int off = 0;
+  double in_place = 0;
+  for (const auto& sample : rig.hand->samples) {
+    const TickOutput& out = sample.out;
+    const double z = out.X_WD.p().z();
+    const double wanted = 28253.5 * std::max(0.0, kPressedBy - z);
+    off += std::abs(std::abs(out.axial_true) - wanted) > 1 + 0.02 * wanted ? 1 : 0;
+    off += std::abs(std::abs(out.axial_felt) - map.Felt(std::abs(out.axial_true))) > 0.1 ? 1 : 0;
+    in_place = std::abs(z) < 20e-6 ? std::abs(out.axial_true) : in_place;
+  }
+  EXPECT_LT(off, 20);
+  EXPECT_NEAR(in_place, 56.5, 1.5);
 }
 
 }  // namespace

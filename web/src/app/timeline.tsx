@@ -146,15 +146,20 @@ function Track({ marks }: { marks: readonly Mark[] }) {
   const thumb = useRef<HTMLElement>(null);
   const place = () => {
     const share = shareOf(thumbS());
-    fill.current!.style.transform = `scaleX(${share})`;
-    thumb.current!.style.left = `${100 * share}%`;
+    if (fill.current !== null && thumb.current !== null) {
+      fill.current.style.transform = `scaleX(${share})`;
+      thumb.current.style.left = `${100 * share}%`;
+    }
   };
   const tell = () => {
+    if (slider.current === null) {
+      return;
+    }
     const { beginS, endS } = plotClock();
-    slider.current!.setAttribute("aria-valuemax", (endS - beginS).toFixed(1));
-    slider.current!.setAttribute("aria-valuenow", (thumbS() - beginS).toFixed(1));
-    slider.current!.setAttribute("aria-valuetext", thumbText(marks));
-    slider.current!.title = thumbText(marks);
+    slider.current.setAttribute("aria-valuemax", (endS - beginS).toFixed(1));
+    slider.current.setAttribute("aria-valuenow", (thumbS() - beginS).toFixed(1));
+    slider.current.setAttribute("aria-valuetext", thumbText(marks));
+    slider.current.title = thumbText(marks);
   };
   useLive(place, kDrawMs);
   useLive(tell, 250);

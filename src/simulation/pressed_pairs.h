@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/giving_curve.h"
+#include "product/product.h"
+#include "simulation/sequence.h"
+
+/** Springs, spring washers and gaskets that a part presses together when it goes to its place, and
+ slit pins and sleeves that their hole presses: docs/algorithms/flexible.md. */
+namespace hvas::simulation {
+
+/** A part that presses others together along its way. */
+struct PressedPair {
+  product::OccurrenceId moved;               ///< The part of the step that moves.
+  std::vector<product::OccurrenceId> parts;  ///< What is pressed, one behind the other.
+  product::OccurrenceId support;             ///< What the last of them stands on.
+  double compression{0};                     ///< Compression of all, with `moved` in its place [m].
+  double force{0};                           ///< Force then; slit pin, sleeve: most, going in [N].
+  bool is_radial{false};                     ///< A hole or shaft presses it, all around.
+  std::string source;                        ///< Closed form and source of the force.
+  std::shared_ptr<const haptics::GivingCurve> curve;
+};
+
+/** Finds what presses what together: a part that moves along the axis of one that pushes back, to
+ its end, where the other end stands on a part in its place. Parts that push back one behind the
+ other are pressed by one force. Empty where nothing is pressed by 1 um or more. */
+[[nodiscard]] std::vector<PressedPair> ListPressedPairs(const product::Product& product,
+                                                        const Sequence& sequence);
+
+/** Finds slit pins and sleeves of rubber that are narrower in their hole than free, or wider on
+ their shaft, and what it takes to push them in: friction of their radial force, which grows with
+ the length in the hole. Only where their mate has no fit of ISO 286, which would resist as well. */
+[[nodiscard]] std::vector<PressedPair> ListSqueezedPairs(const product::Product& product,
+                                                         const Sequence& sequence);
+
+}  // namespace hvas::simulation

@@ -1,0 +1,212 @@
+// Slit pins and sleeves of rubber that a hole or a shaft presses all around.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fits/elastic_parts.h"
+#include "fits/friction.h"
+#include "simulation/fit_of_mate.h"
+#include "simulation/pressed_pairs.h"
+
+namespace hvas::simulation {
+namespace {
+
+using product::ElasticKind;
+using product::ElasticPart;
+using product::Mate;
+using product::OccurrenceId;
+using product::Product;
+
+constexpr double kAlongMate = 0.985;    // Cosine of 10 degrees between way and axis. A choice.
+constexpr double kLeastSqueeze = 1e-6;  // [m]: less is no more than the file resolves. A choice.
+constexpr double kPinYield = 1.4e9;     // [Pa]: ISO 8752 has 420 to 520 HV, times 3.2. A choice.
+constexpr int kSqueezeSteps = 120;      // Of a curve; it is a spline. A choice.
+
+/** Whether ISO 286 has the fit of a mate, whose force then counts. */
+bool IsFit(const Mate& mate) {
+  return mate.fit && product::IsIsoFit(mate.fit->kind);
+}
+
+/** The mate's side that is the elastic part. */
+struct ElasticMate {
+  const Mate* mate{nullptr};
+  const ElasticPart* part{nullptr};
+  OccurrenceId other;
+  bool is_shaft{true};  // The elastic part is in a hole.
+};
+
+/** How much smaller its radius is in its place, or how much wider, and its radial force then. */
+struct Squeeze {
+  double given{0};      // [m]
+  double stiffness{0};  // [N/m]
+  const char* source{""};
+};
+
+Squeeze CalcPinSqueeze(const ElasticPart& pin, double hole_radius, double length) {
+  const fits::SlitPin law{pin.free_size, pin.thickness, length, pin.modulus, kPinYield};
+  const double given = 0.5 * pin.free_size - hole_radius;
+  const double force = fits::CalcSlitPinForce(law, given);
+  const double stiffness = fits::CalcSpreadStiffness(
+      {0.5 * (pin.free_size - pin.thickness), pin.thickness, length, pin.modulus});
+  // Beyond its yield it resists by no more.
+  return {stiffness > 0 ? std::min(given, force / stiffness) : 0, stiffness,
+          "open ring that its hole closes, Timoshenko, up to its yield"};
+}
+
+/** @param gap  Radial width of the room between hole and shaft, where both are there, else 0. */
+Squeeze CalcSleeveSqueeze(const ElasticPart& sleeve, const ElasticMate& side, double length,
+                          double gap) {
+  const double bore = 0.5 * sleeve.inner;
+  const double outside = 0.5 * sleeve.free_size;
+  const fits::RubberSleeve law{bore, outside, length, sleeve.modulus};
+  if (gap > 0) {
+    return {outside - bore - gap, fits::CalcSleeveStiffness(law),
+            "wall of rubber, Gent and Lindley"};
+  }
+  const double given =
+      side.is_shaft ? outside - side.mate->hole_radius : side.mate->shaft_radius - bore;
+  return {given, fits::CalcSleeveHoopStiffness(law), "ring of rubber under hoop tension"};
+}
+
+/** Length of the shaft in the hole once the shaft is `travel` out along the mate's z, or against
+ it. */
+double CalcEngaged(const Mate& mate, double travel) {
+  return std::max(0.0, std::min(mate.hole_high, mate.shaft_high + travel) -
+                           std::max(mate.hole_low, mate.shaft_low + travel));
+}
+
+class SqueezeSearch {
+ public:
+  SqueezeSearch(const Product& product, const Sequence& sequence)
+      : product_(product), sequence_(sequence), is_placed_(product.occurrences.size(), false) {}
+
+  std::vector<PressedPair> Run() {
+    CollectMates();
+    if (mates_.empty()) {
+      return {};
+    }
+    for (const SequenceStep& step : sequence_.steps) {
+      std::vector<OccurrenceId> unit = step.members;
+      unit.push_back(step.occurrence);
+      if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
+        for (const ElasticMate& side : mates_) {
+          FindSqueeze(step, unit, side);
+        }
+      }
+      for (const OccurrenceId id : unit) {
+        is_placed_[id.index()] = true;
+      }
+    }
+    return std::move(pairs_);
+  }
+
+ private:
+  void CollectMates() {
+    for (const Mate& mate : product_.mates) {
+      if (mate.kind != product::MateKind::kAxisHole || IsFit(mate)) {
+        continue;
+      }
+      for (const bool is_shaft : {true, false}) {
+        const OccurrenceId own = is_shaft ? mate.b.occurrence : mate.a.occurrence;
+        const OccurrenceId other = is_shaft ? mate.a.occurrence : mate.b.occurrence;
+        const ElasticPart* part = FindElastic(product_, own);
+        if (part != nullptr && (part->kind == ElasticKind::kSleeve ||
+                                (part->kind == ElasticKind::kSlitPin && is_shaft))) {
+          mates_.push_back({&mate, part, other, is_shaft});
+        }
+      }
+    }
+  }
+
+  /** The room between the hole and the shaft of a sleeve, both in their place or moved; 0 where one
+   is not there. */
+  [[nodiscard]] double FindGap(const ElasticMate& side,
+                               const std::vector<OccurrenceId>& unit) const {
+    for (const ElasticMate& opposite : mates_) {
+      const bool is_there = is_placed_[opposite.other.index()] ||
+                            std::find(unit.begin(), unit.end(), opposite.other) != unit.end();
+      if (opposite.part == side.part && opposite.is_shaft != side.is_shaft && is_there) {
+        const Mate& in_hole = side.is_shaft ? *side.mate : *opposite.mate;
+        const Mate& on_shaft = side.is_shaft ? *opposite.mate : *side.mate;
+        return std::max(0.0, in_hole.hole_radius - on_shaft.shaft_radius);
+      }
+    }
+    return 0;
+  }
+
+  void FindSqueeze(const SequenceStep& step, const std::vector<OccurrenceId>& unit,
+                   const ElasticMate& side) {
+    const auto is_moved = [&unit](OccurrenceId part) {
+      return std::find(unit.begin(), unit.end(), part) != unit.end();
+    };
+    const OccurrenceId own = side.part->occurrence;
+    const bool is_own = is_moved(own);
+    if (is_own == is_moved(side.other) || !is_placed_[(is_own ? side.other : own).index()]) {
+      return;
+    }
+    const Mate& mate = *side.mate;
+    const Vec3 axis_W = product_.occurrences[mate.a.occurrence.index()].X_WB.q() *
+                        (mate.a.X_BM.q() * Vec3::UnitZ());
+    const double along = step.extraction_W.dot(axis_W);
+    if (std::abs(along) < kAlongMate) {
+      return;
+    }
+    const bool shaft_moves = is_own == side.is_shaft;
+    const double direction = (along > 0 ? 1.0 : -1.0) * (shaft_moves ? 1.0 : -1.0);
+    const double length = CalcEngaged(mate, 0);
+    if (!(length > 0)) {
+      return;
+    }
+    const Squeeze squeeze = side.part->kind == ElasticKind::kSlitPin
+                                ? CalcPinSqueeze(*side.part, mate.hole_radius, length)
+                                : CalcSleeveSqueeze(*side.part, side, length, FindGap(side, unit));
+    if (!(squeeze.given > kLeastSqueeze) || !(squeeze.stiffness > 0)) {
+      return;
+    }
+    AddPair(step, side, squeeze, direction);
+  }
+
+  void AddPair(const SequenceStep& step, const ElasticMate& side, const Squeeze& squeeze,
+               double direction) {
+    const Mate& mate = *side.mate;
+    const double length = CalcEngaged(mate, 0);
+    const double until =
+        direction > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
+    auto curve = std::make_shared<haptics::GivingCurve>();
+    curve->stiffness = squeeze.stiffness;
+    curve->friction =
+        fits::FindFriction(SurfaceOf(product_.part_of(side.part->occurrence).material),
+                           SurfaceOf(product_.part_of(side.other).material), fits::FrictionLaw{})
+            .kinetic_coefficient;
+    curve->spacing = until / kSqueezeSteps;
+    for (int i = 0; i < kSqueezeSteps; ++i) {
+      const double engaged = CalcEngaged(mate, direction * i * curve->spacing);
+      curve->given.push_back(squeeze.given * engaged / length);
+    }
+    PressedPair pair;
+    pair.moved = step.occurrence;
+    pair.parts = {side.part->occurrence};
+    pair.support = side.other;
+    pair.compression = squeeze.given;
+    pair.force = haptics::CalcGivingPeak(*curve).in;
+    pair.is_radial = true;
+    pair.source = squeeze.source;
+    pair.curve = std::move(curve);
+    pairs_.push_back(std::move(pair));
+  }
+
+  const Product& product_;
+  const Sequence& sequence_;
+  std::vector<bool> is_placed_;
+  std::vector<ElasticMate> mates_;
+  std::vector<PressedPair> pairs_;
+};
+
+}  // namespace
+
+std::vector<PressedPair> ListSqueezedPairs(const Product& product, const Sequence& sequence) {
+  return SqueezeSearch(product, sequence).Run();
+}
+
+}  // namespace hvas::simulation
