@@ -170,7 +170,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     } else if (method == http::verb::get) {
       try {
         Reply(MakeApiResponse(shared_->workbench, DecodePercent(path),
-                              shared_->hub.IsShielded(role)));
+                              shared_->hub.IsShielded(role),
+                              FieldOf(header_->get(), http::field::accept_encoding)));
       } catch (const std::exception& failed) {
         Refuse(http::status::internal_server_error,
                {ErrorCode::kInternal, failed.what(), std::string(path), "reload the page"});

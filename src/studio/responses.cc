@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "studio/assets.h"
+#include "studio/gzip.h"
 #include "studio/recording.h"
 #include "studio/scene_json.h"
 
@@ -47,20 +48,40 @@ Response MakeGlbResponse(std::string_view bytes, const std::string& digest,
   return response;
 }
 
-Result<Response> MakeSceneResponse(const LiveScene& live, bool is_shielded) {
+/** What is written for this request alone goes compressed to whoever takes it so. */
+Result<Response> Compress(Result<Response> made, std::string_view accepted) {
+  constexpr std::size_t kLeast = 1024;  // Less fits into one packet of a network: a choice.
+  if (made && AcceptsGzip(accepted) && made->bytes.size() >= kLeast) {
+    const auto packed = std::make_shared<const std::string>(Gzip(made->bytes));
+    made->bytes = *packed;
+    made->owner = packed;
+    made->encoding = "gzip";
+  }
+  return made;
+}
+
+Result<Response> MakeSceneResponse(const LiveScene& live, bool is_shielded,
+                                   std::string_view accepted) {
   const SceneSnapshot now = live.MakeSnapshot();
   if (now.scene == nullptr) {
     return Fail(ErrorCode::kNotFound, "no product is open", "", "open a file or an example");
   }
-  return MakeOwnedResponse(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
-                                       : MakeSceneJson(*now.scene, now.state));
+  return Compress(MakeOwnedResponse(is_shielded ? MakeShieldedSceneJson(*now.scene, now.state)
+                                                : MakeSceneJson(*now.scene, now.state)),
+                  accepted);
 }
 
-Result<Response> MakeModelResponse(const LiveScene& live, std::string_view name) {
+Result<Response> MakeModelResponse(const LiveScene& live, std::string_view name,
+                                   std::string_view accepted) {
   const auto scene = live.scene();
   if (scene == nullptr || name != scene->glb_hash + ".glb") {
     return Fail(ErrorCode::kNotFound, "this model is no longer open", std::string(name),
                 "request /api/scene again");
+  }
+  if (AcceptsGzip(accepted)) {
+    Response response = MakeGlbResponse(*scene->glb_gzip, scene->glb_hash, scene);
+    response.encoding = "gzip";
+    return response;
   }
   return MakeGlbResponse(*scene->glb, scene->glb_hash, scene);
 }
@@ -130,12 +151,13 @@ Result<Response> MakeAssetResponse(std::string_view path, std::string_view accep
   return response;
 }
 
-Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded) {
+Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded,
+                                 std::string_view accepted) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
   if (path == "/api/scene") {
-    return MakeSceneResponse(workbench->live(), is_shielded);
+    return MakeSceneResponse(workbench->live(), is_shielded, accepted);
   }
   if (is_shielded && !path.starts_with(kModel)) {
     return FailNotFound(path);
@@ -144,7 +166,7 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
     return MakeOwnedResponse(workbench->recordings().shelf().List());
   }
   if (path.starts_with(kModel)) {
-    return MakeModelResponse(workbench->live(), path.substr(kModel.size()));
+    return MakeModelResponse(workbench->live(), path.substr(kModel.size()), accepted);
   }
   if (path.starts_with(kPath)) {
     return MakePathResponse(workbench->sweeper(), path.substr(kPath.size()));

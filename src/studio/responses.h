@@ -28,9 +28,12 @@ struct Response {
 
 /** Serves a resource below /api/ to a client with a session (docs/protocol.md).
  @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
- meshes, and nothing else. Errors: kNotFound for unknown resources; those of reading a record. */
+ meshes, and nothing else.
+ @param accepted  Value of Accept-Encoding: scene and meshes go compressed to whoever takes gzip.
+ Errors: kNotFound for unknown resources; those of reading a record. */
 [[nodiscard]] Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
-                                               bool is_shielded = false);
+                                               bool is_shielded = false,
+                                               std::string_view accepted = {});
 
 /** Decodes the percent-encoding (%xx) of a URL's path; malformed sequences stay as they are. */
 [[nodiscard]] std::string DecodePercent(std::string_view path);

@@ -11,6 +11,7 @@
 #include "simulation/order_search.h"
 #include "studio/commands.h"
 #include "studio/event_json.h"
+#include "studio/gzip.h"
 #include "studio/json_fields.h"
 #include "studio/saved_work.h"
 
@@ -50,6 +51,7 @@ Result<void> GiveMeshes(const product::Product& product, OpenScene* scene) {
   Digest digest;
   digest.AddText(*glb);
   scene->glb_hash = digest.Hex();
+  scene->glb_gzip = std::make_shared<const std::string>(Gzip(*glb));
   scene->glb = std::make_shared<const std::string>(std::move(*glb));
   return {};
 }

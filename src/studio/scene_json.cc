@@ -220,6 +220,7 @@ Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
           {"name", product.name},
           {"source", product.source},
           {"glb", fmt::format("/api/model/{}.glb", scene.glb_hash)},
+          {"glb_bytes", scene.glb->size()},
           {"triangles", CountTriangles(product)},
           {"table_z_m", model.table_z},
           {"centre_m", ToJson(model.centre_W)},

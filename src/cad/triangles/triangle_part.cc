@@ -123,10 +123,11 @@ void ReportDefects(const WeldedMesh& mesh, const Part& part, Diagnostics* diagno
                     defects.open_edges),
         "repair the mesh, or export STEP");
   } else if (open_shells > 0) {
-    diagnostics->Warn("open-mesh", part.name,
-                      fmt::format("{} of {} pieces of this mesh are not closed, so they have no volume",
-                                  open_shells, mesh.shells.size()),
-                      "repair the mesh, or export STEP");
+    diagnostics->Warn(
+        "open-mesh", part.name,
+        fmt::format("{} of {} pieces of this mesh are not closed, so they have no volume",
+                    open_shells, mesh.shells.size()),
+        "repair the mesh, or export STEP");
   }
   if (part.solid_count > 1) {
     diagnostics->Note("many-solids", part.name,

@@ -154,4 +154,6 @@ export const deView: Record<keyof typeof enView, string> = {
   "log.filter.all": "Alle Ereignisse",
   "log.filter.parts": "Teile",
   "log.filter.alarms": "Warnungen",
+  "load.meshes": "Das Bild wird geholt",
+  "load.contact shapes": "Kontaktformen werden vorbereitet",
 };

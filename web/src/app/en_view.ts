@@ -152,4 +152,6 @@ export const enView = {
   "log.filter.all": "All events",
   "log.filter.parts": "Parts",
   "log.filter.alarms": "Alarms",
+  "load.meshes": "Fetching the picture",
+  "load.contact shapes": "Preparing contact shapes",
 } as const;

@@ -175,6 +175,21 @@ export function ModelTree() {
       list.current?.querySelector(`[id="tree-${active.value}"]`)?.scrollIntoView({ block: "nearest" });
     }
   };
+  /** Enter takes the first part that is found and brings it into the picture; the arrow goes on to the list. */
+  const onSearchKey = (event: KeyboardEvent) => {
+    const found = rows.value.find(({ node }) => node.children.length === 0) ?? rows.value[0];
+    if (found === undefined || (event.key !== "Enter" && event.key !== "ArrowDown")) {
+      return;
+    }
+    event.preventDefault();
+    active.value = found.node.key;
+    if (event.key === "Enter") {
+      select(view, found.node.occurrences, false);
+      viewport.value?.fit(found.node.occurrences);
+    } else {
+      list.current?.focus();
+    }
+  };
   return (
     <section class="tree-panel" aria-labelledby="tree-title">
       <h2 id="tree-title">{tn("tree.title", scene?.occurrences.length ?? 0)}</h2>
@@ -188,6 +203,7 @@ export function ModelTree() {
           aria-label={t("tree.find")}
           data-testid="tree-search"
           onInput={(event) => (text.value = event.currentTarget.value)}
+          onKeyDown={onSearchKey}
         />
         <Key of={findAction("find")} />
       </div>

@@ -81,7 +81,9 @@ export function LoadingDrawer() {
       </div>
     );
   }
-  const now = upload !== null ? { ...upload, stage: "upload" } : loading;
+  const share = store.meshShare.value;
+  const meshes = share === null ? null : { file: store.scene.value?.name ?? "", fraction: share, stage: "meshes" };
+  const now = upload !== null ? { ...upload, stage: "upload" } : (loading ?? meshes);
   if (now === null) {
     return null;
   }

@@ -155,8 +155,19 @@ export function makeStore() {
   const study = signal<StudyState | null>(null);
   /** Whoever watches over a study does not do its work. */
   const isWatchingOver = computed(() => study.value?.view === "experimenter");
+  /** What has come of the meshes of a product, as a share of them; null: none are on their way. */
+  const meshShare = signal<number | null>(null);
   return {
     link,
+    meshShare,
+    /** @param size  Of the meshes; not known of those of older recordings. */
+    followMeshes: async <T>(size: number | undefined, load: (tell: (bytes: number) => void) => Promise<T>): Promise<T> => {
+      try {
+        return await load((bytes) => (meshShare.value = size === undefined ? null : Math.min(1, bytes / size)));
+      } finally {
+        meshShare.value = null;
+      }
+    },
     /** Why this page is not let in, as far as the server has said it. */
     denial: signal<ServerError | null>(null),
     /** The server has said nothing for a second, though it should have. */

@@ -19,9 +19,10 @@ function meshesOf(node: Object3D): Mesh[] {
   return meshes;
 }
 
-/** @return Shapes by occurrence; like parts share one. */
-export async function loadShapes(url: string): Promise<Map<number, PartShape>> {
-  const gltf = await new GLTFLoader().loadAsync(url);
+/** @param onBytes  Hears how many bytes there are by now.
+ @return Shapes by occurrence; like parts share one. */
+export async function loadShapes(url: string, onBytes: (count: number) => void = () => {}): Promise<Map<number, PartShape>> {
+  const gltf = await new GLTFLoader().loadAsync(url, ({ loaded }) => onBytes(loaded));
   const shapes = new Map<number, PartShape>();
   const byGeometry = new Map<BufferGeometry, PartShape>();
   gltf.scene.traverse((node) => {

@@ -156,7 +156,7 @@ export class SceneView {
     }
     const loaded = loadedAs(scene, this.scene);
     if (this.parts === null || this.glbUrl !== scene.glb) {
-      const shapes = await loadShapes(scene.glb);
+      const shapes = await this.store.followMeshes(scene.glb_bytes, (tell) => loadShapes(scene.glb, tell));
       if (turn !== this.loadCount) {
         return;
       }
