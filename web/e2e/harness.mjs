@@ -420,7 +420,7 @@ export function distance(a, b) {
 }
 
 /** Clicks where one sees this face of a part. */
-export async function clickFace(page, occurrence, face) {
+async function clickFace(page, occurrence, face) {
   const at = await page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
   assert.ok(at, `face ${face} of part ${occurrence} is to be seen`);
   await page.mouse.move(at.x, at.y);
@@ -428,10 +428,46 @@ export async function clickFace(page, occurrence, face) {
   await page.mouse.up();
 }
 
+/** Turns the view up or down by dragging beside the parts. */
+export async function turnView(page, dy) {
+  const { width, height } = page.viewportSize();
+  const x = 0.92 * width;
+  const y = (dy < 0 ? 0.8 : 0.18) * height;
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + dy, { steps: 6 });
+  await page.mouse.up();
+  await waitForView(page);
+}
+
+/** The same by the arrow keys, which turn it where nothing is in the hand. */
+export async function turnViewByKeys(page, dy) {
+  await page.locator("canvas[role=application]").focus();
+  await pressTimes(page, dy < 0 ? "ArrowDown" : "ArrowUp", 2);
+  await waitForView(page);
+}
+
+/** Turns the view, first from below and then from above, until one sees a face of a part at rest; clicks it.
+ @param moving  The part that a constraint may still be moving: it could hide the face a moment later. */
+export async function findAndClickFace(page, occurrence, face, moving, turn = turnView) {
+  const find = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
+  await waitForRest(page, moving);
+  await waitForView(page);
+  for (const dy of [...Array(6).fill(-60), ...Array(12).fill(60)]) {
+    if ((await find()) !== null) {
+      break;
+    }
+    await turn(page, dy);
+  }
+  await clickFace(page, occurrence, face);
+}
+
 /** Presses on a part and drags it a little: it is in the hand then. */
 export async function takeByMouse(page, occurrence) {
   await waitForState(page, ({ hasLease }) => hasLease);  // who does not steer takes nothing
-  await waitForView(page);  // a part is pressed where it is seen when the button goes down
+  // The page brings the next part into its picture; it is pressed where it is seen when the button goes down.
+  await page.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence, { timeout: 20_000 });
+  await waitForView(page);
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   assert.ok(at.isVisible, `part ${occurrence} is to be seen`);
   await page.mouse.move(at.x, at.y);

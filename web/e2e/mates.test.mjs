@@ -3,13 +3,14 @@ import assert from "node:assert/strict";
 import { describe, it } from "node:test";
 import {
   browser,
-  clickFace,
   copyToTemporary,
   fetchScene,
+  findAndClickFace,
   openPage,
   runProgram,
   shareBrowser,
   takePicture,
+  turnViewByKeys,
   waitForPicture,
   waitForState,
   withStudio,
@@ -44,8 +45,8 @@ describe("a mate", () => {
       await page.keyboard.press("c");
       await page.getByTestId("mate-panel").waitFor();
       const [hole, shaft] = [mate.surfaces[0].a, mate.surfaces[0].b];
-      await clickFace(page, mate.hole.occurrence, hole);
-      await clickFace(page, mate.shaft.occurrence, shaft);
+      await findAndClickFace(page, mate.hole.occurrence, hole, kShaft, turnViewByKeys);
+      await findAndClickFace(page, mate.shaft.occurrence, shaft, kShaft, turnViewByKeys);
       await page.getByTestId("mate-fit").fill("H7/k6");
       await takePicture(page, "mate_picked");
       await page.getByTestId("mate-create").click();
@@ -81,8 +82,8 @@ describe("a mate", () => {
       [planes, kSleeve],
     );
     await page.keyboard.press("c");
-    await clickFace(page, kShaft, shaft.faces_b[0]);
-    await clickFace(page, ...seen);
+    await findAndClickFace(page, kShaft, shaft.faces_b[0], kShaft, turnViewByKeys);
+    await findAndClickFace(page, ...seen, kShaft, turnViewByKeys);
     await page.getByTestId("mate-create").click();
     assert.match(await page.getByTestId("notice").textContent(), /a plane and a shaft|a shaft and a plane/);
     await takePicture(page, "mate_refused");
@@ -128,13 +129,13 @@ describe("a mate", () => {
     const { mates, epoch } = await fetchScene(page);
     const shaft = mates.find((m) => m.kind === "axis_hole" && m.b === kShaft);
     await page.keyboard.press("c");
-    await clickFace(page, kShaft, shaft.faces_b[0]);
+    await findAndClickFace(page, kShaft, shaft.faces_b[0], kShaft, turnViewByKeys);
     await page.getByTestId("part-0").waitFor();
     const seen = await page.evaluate(
       (faces) => faces.find(([o, f]) => window.hvas.screenOfFace(o, f) !== null),
       mates.filter((m) => m.kind === "axis_hole").map((m) => [m.a, m.faces_a[0]]),
     );
-    await clickFace(page, ...seen);
+    await findAndClickFace(page, ...seen, kShaft, turnViewByKeys);
     const picked = await page.getByTestId("mate-panel").locator(".picked").textContent();
     await page.getByTestId("mate-fit").fill("H7");
     assert.equal(await page.getByTestId("mate-create").isDisabled(), true);

@@ -5,9 +5,9 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
   browser,
-  clickFace,
   distance,
   fetchScene,
+  findAndClickFace,
   makeFolder,
   nextFrame,
   poseOf,
@@ -16,9 +16,9 @@ import {
   startStudio,
   takeByMouse,
   takePicture,
+  turnView,
   waitForPicture,
   waitForRest,
-  waitForView,
 } from "./harness.mjs";
 import { StudyPeer } from "./study_peer.mjs";
 import { agree, openQuietPage, press, startTrial } from "./study_steps.mjs";
@@ -44,33 +44,6 @@ hidden: [condition]
 `;
 
 shareBrowser();
-
-/** Turns the view up or down by dragging beside the parts. */
-async function turnView(page, dy) {
-  const { width, height } = page.viewportSize();
-  const x = 0.92 * width;
-  const y = (dy < 0 ? 0.8 : 0.18) * height;
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x, y + dy, { steps: 6 });
-  await page.mouse.up();
-  await waitForView(page);
-}
-
-/** Turns the view, first from below and then from above, until one sees a face of a part at rest; clicks it.
- @param moving  The part that a constraint may still be moving: it could hide the face a moment later. */
-async function findAndClickFace(page, occurrence, face, moving) {
-  const find = () => page.evaluate(([o, f]) => window.hvas.screenOfFace(o, f), [occurrence, face]);
-  await waitForRest(page, moving);
-  await waitForView(page);
-  for (const dy of [...Array(6).fill(-60), ...Array(12).fill(60)]) {
-    if ((await find()) !== null) {
-      break;
-    }
-    await turnView(page, dy);
-  }
-  await clickFace(page, occurrence, face);
-}
 
 /** The scene once a trial has put all other parts in their places, which its first tick does, and the part that is left. */
 async function findTrialPart(page) {

@@ -1,10 +1,10 @@
 /** The studio on a phone: the view as a whole, one sheet from below, and tools in reach of a thumb. */
 
 import type { ComponentChildren } from "preact";
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { ActionButton } from "./action_button";
 import { actions, findAction, isEnabled, runAction } from "./actions";
-import { store, ui, type PhoneSheetName } from "./app_state";
+import { store, ui, viewport, type PhoneSheetName } from "./app_state";
 import { ConstraintList } from "./constraint_list";
 import type { MessageKey } from "./en";
 import { ForcesButton } from "./forces_button";
@@ -104,6 +104,7 @@ export function PhoneSheet() {
 
 export function PhoneBar() {
   const open = ui.phoneSheet.value;
+  useEffect(() => viewport.value?.guide.showNext(true), [open]);
   const demo = findAction("demo");
   return (
     <nav class="phone-bar" aria-label={t("header.panels")}>

@@ -62,8 +62,9 @@ export class CameraGuide {
     this.life.end();
   }
 
-  /** Brings the next part and its place into the picture, unless both are seen well already. */
-  showNext(): void {
+  /** Brings the next part and its place into the picture.
+   @param isSure  Also where both are seen well already. */
+  showNext(isSure = false): void {
     const { product, hand, rig } = this.viewport;
     const step = this.studio.store.expected.peek();
     const place = step === null ? [] : product.placeOf(step.occurrence);
@@ -72,7 +73,7 @@ export class CameraGuide {
       return;
     }
     const part = product.outline([step.occurrence]);
-    if (!this.isSeen(part) || !this.isSeen(place)) {
+    if (isSure || !this.isSeen(part) || !this.isSeen(place)) {
       // What is there already says where the place is, unless the part were too small beside it.
       const there = this.viewport.product.outline(this.listPlaced());
       const isSmall = reachOf(part) * kMostTimesLarger < reachOf(there);

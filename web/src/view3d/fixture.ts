@@ -1,4 +1,5 @@
-/** The vise in which the first part stands: as large as the part, and as high as the table is below it. */
+/** The vise in which the first part stands, or the plate on which a flat one lies: as large as the part, and as high as
+ the table is below it. */
 
 import { Box3, BoxGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Vector3, type BufferGeometry } from "three";
 
@@ -8,6 +9,8 @@ const kFootHeight = 0.25;
 const kBody = 0.86;
 const kJaw = 0.14;
 const kJawHeight = 0.16;
+/** What is flatter than this share of its width lies on a plate: no jaw could hold it. */
+const kFlat = 0.3;
 /** A lower gap under the part needs no fixture [m]. */
 const kLeastHeight = 1e-3;
 
@@ -34,6 +37,9 @@ export class Fixture {
     const foot = kFootHeight * height;
     this.add(new BoxGeometry(kFoot * size.x, kFoot * size.y, foot), this.cast, middle.x, middle.y, tableZ + foot / 2);
     this.add(new BoxGeometry(kBody * size.x, kBody * size.y, height - foot), this.cast, middle.x, middle.y, (tableZ + foot + base.min.z) / 2);
+    if (size.z < kFlat * Math.max(size.x, size.y)) {
+      return;
+    }
     this.addJaws(base, size, others);
     const radius = 0.3 * (height - foot);
     const spindle = new CylinderGeometry(radius, radius, 0.3 * size.y, 32);

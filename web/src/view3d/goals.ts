@@ -16,6 +16,15 @@ export function cornersOf(box: Box | undefined): Vector3[] {
   return Array.from({ length: 8 }, (_, k) => new Vector3(...low.map((at, axis) => ((k >> axis) & 1 ? (high[axis] ?? at) : at))));
 }
 
+/** Above the parts there is room in the picture to carry one, as a share of the radius at which parts are carried around
+ the product: a choice. */
+export const kHeadroom = 0.5;
+
+/** The points, and those that are so much higher [m]. */
+export function withHeadroom(points: readonly Vector3[], height: number): Vector3[] {
+  return [...points, ...points.map(({ x, y, z }) => new Vector3(x, y, z + height))];
+}
+
 /** Of each part in its place, in W. */
 export function goalBoxes(scene: Scene, parts: Parts): Map<number, Box> {
   const boxes = new Map<number, Box>();

@@ -13,7 +13,7 @@ import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
 import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ExplodeLayer } from "./explode_layer";
-import { boxesBut, centreOfMass, cornersOf, ghostsOf, goalBoxes } from "./goals";
+import { boxesBut, centreOfMass, cornersOf, ghostsOf, goalBoxes, kHeadroom, withHeadroom } from "./goals";
 import { loadShapes } from "./glb";
 import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
@@ -108,7 +108,7 @@ export class SceneView {
 
   /** Of what is to be seen at first: in a study also the place of the part at hand. */
   firstOutline(): Vector3[] {
-    return [...this.outline(), ...this.placeOf(this.store.study.peek()?.occurrence ?? -1)];
+    return [...withHeadroom(this.outline(), kHeadroom * this.sphere.radius), ...this.placeOf(this.store.study.peek()?.occurrence ?? -1)];
   }
 
   /** Corners of the box of a part in its place. */

@@ -45,7 +45,7 @@ export class Viewport {
   readonly hand: HandControl;
   readonly pointer: PointerInput;
   readonly workshop: WorkshopHost;
-  private readonly guide: CameraGuide;
+  readonly guide: CameraGuide;
   framesDrawn = 0;
   readonly meter = new FrameMeter();
   live: LiveState | null = null;
@@ -246,8 +246,8 @@ export class Viewport {
       this.show(this.pendingView);
     } else if (loaded === "new" || (loaded === "completed" && this.rig.isWhereItBegan())) {
       this.lookAnew();
-      this.guide.showNext();
     }
+    this.guide.showNext();
     this.hand.stop();
   }
 
