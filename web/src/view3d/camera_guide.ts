@@ -109,12 +109,15 @@ export class CameraGuide {
     }
   }
 
-  /** Whether a box lies in the picture, and is not too small in it. */
+  /** Whether a box lies in the part of the picture that no panel covers, and is not too small in it. */
   private isSeen(corners: readonly Vector3[]): boolean {
     const { clientWidth, clientHeight } = this.viewport.canvas;
+    const { left, right, top, bottom } = this.viewport.rig.rim();
+    const isFree = (x: number, y: number) =>
+      x >= left * clientWidth && x <= (1 - right) * clientWidth && y >= top * clientHeight && y <= (1 - bottom) * clientHeight;
     const at = corners.map((corner) => this.viewport.project(corner.toArray()));
     const [xs, ys] = [at.map(({ x }) => x), at.map(({ y }) => y)];
-    const isInside = at.every(({ x, y, isBehind }) => !isBehind && x >= 0 && y >= 0 && x <= clientWidth && y <= clientHeight);
+    const isInside = at.every(({ x, y, isBehind }) => !isBehind && isFree(x, y));
     const reach = Math.hypot(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys));
     return isInside && reach >= kLeastSeen;
   }
