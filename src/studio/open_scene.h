@@ -20,7 +20,7 @@ struct OpenScene {
   std::shared_ptr<const simulation::Model> model;
   Diagnostics diagnostics;
   std::shared_ptr<const std::string> glb;
-  std::shared_ptr<const std::string> glb_gzip;  ///< The same, compressed for browsers.
+  std::shared_ptr<const std::string> glb_gzip;  ///< `glb`, compressed for browsers.
   std::string glb_hash;
   std::filesystem::path file;  ///< CAD file that was opened.
   std::string name;            ///< Display name of the file.

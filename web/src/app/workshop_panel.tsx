@@ -29,7 +29,7 @@ function moved(item: BenchItem, key: string): BenchItem | null {
 
 export function WorkshopPanel() {
   const host = viewport.value?.workshop;
-  if (!view.editsBench.value || !view.drawsWorkshop.value || host === undefined) {
+  if (!view.editsBench.value || !view.showsWorkshop.value || host === undefined) {
     return null;
   }
   const items = host.items;
