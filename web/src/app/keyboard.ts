@@ -112,7 +112,7 @@ const kClosers: readonly Closer[] = [
     },
   },
   { isOpen: () => paths.shown.value !== null, close: () => paths.hide() },
-  flag(view.showsWorkshop),
+  flag(view.editsBench),
   { isOpen: () => view.apart.value !== null, close: () => (view.apart.value = null) },
   { isOpen: () => view.explode.value > 0, close: () => (view.explode.value = 0) },
   { isOpen: () => view.section.value !== null, close: () => (view.section.value = null) },
