@@ -65,7 +65,7 @@ describe("a view", () => {
   it("ends all that it has begun, and frees all that it was drawn with", async () => {
     for (let round = 0; round < 3; round++) {
       const made = await makeView();
-      made.view.showsWorkshop.value = true;
+      made.view.showsWorkshop.value = made.view.isFast.value = true;
       await vi.waitFor(() => expect(made.port.workshop.isShown).toBe(true), { timeout: 20_000 });
       change(made, round);
       await Promise.resolve();
@@ -86,7 +86,7 @@ describe("a view", () => {
     for (const each of [made, other]) {
       change(each, 1);
       each.store.live.scene.value = { ...toyScene, epoch: 4 };
-      each.view.showsWorkshop.value = true;
+      each.view.showsWorkshop.value = each.view.isFast.value = true;
     }
     await vi.waitFor(() => expect(other.port.workshop.isShown).toBe(true), { timeout: 20_000 });
     other.port.dispose();
