@@ -73,6 +73,7 @@ Result<std::string> MakeWorkAnimation(const simulation::Model& model, const Work
     motions.try_emplace(id, cad::GlbMotion{id, kNever, {0}, {X_WB}});
   }
   std::vector<cad::GlbMotion> list;
+  list.reserve(motions.size());
   for (auto& [id, motion] : motions) {
     list.push_back(std::move(motion));
   }
