@@ -117,7 +117,7 @@ describe("what the simulated person has put together", () => {
   before(async () => {
     ({ page, complaints } = await openPage(browser, studio.operator));
     await waitForPicture(page);
-    await page.getByRole("button", { name: /Demonstrate/ }).first().click();
+    await page.getByRole("button", { name: /Auto-assemble/ }).first().click();
     await page.getByTestId("demo-runs").waitFor();
     await page.getByTestId("demo-runs").waitFor({ state: "detached", timeout: 90_000 });
   });
