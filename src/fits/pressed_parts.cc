@@ -127,6 +127,11 @@ double CalcPressForce(const PressedPart& part, double compression) noexcept {
   return CalcUnlimited(part, most) + slope * (compression - most);
 }
 
+double CalcPressRate(const PressedPart& part) noexcept {
+  constexpr double kSmall = 1e-6;  // [m]: nothing is pressed by less. A choice.
+  return CalcPressForce(part, kSmall) / kSmall;
+}
+
 double FindMostPressed(const PressedPart& part) noexcept {
   if (const auto* disc = std::get_if<DiscSpring>(&part)) {
     return disc->cone_height;

@@ -102,6 +102,9 @@ using PressedPart =
  Engineering with Rubber, for large compression of blocks. */
 [[nodiscard]] double CalcPressForce(const PressedPart& part, double compression) noexcept;
 
+/** Its rate: force over compression, of the first micrometre [N/m]. */
+[[nodiscard]] double CalcPressRate(const PressedPart& part) noexcept;
+
 /** The compression up to which the force of a part is known [m]; infinite where it is linear. */
 [[nodiscard]] double FindMostPressed(const PressedPart& part) noexcept;
 

@@ -207,8 +207,7 @@ std::string DescribeElastic(const ElasticPart& part) {
   if (!pressed) {
     return text + "; its hole presses it";
   }
-  constexpr double kSmall = 1e-6;  // [m]: its rate is that of the first micrometre. A choice.
-  text += fmt::format(": {:.3g} N/mm", fits::CalcPressForce(*pressed, kSmall) / ToMm(kSmall));
+  text += fmt::format(": {:.3g} N/mm", fits::CalcPressRate(*pressed) * units::kMetresPerMillimetre);
   if (const double compression = CalcCompression(part); compression > 0) {
     text += fmt::format("; pressed together by {:.3g} mm in its place: {:.3g} N", ToMm(compression),
                         fits::CalcPressForce(*pressed, compression));

@@ -171,19 +171,22 @@ bool IsPlaneAcross(const Face& face, const Vec3& axis_B) {
          std::abs(face.surface.axis.dot(axis_B)) > kAlong;
 }
 
-/** Spring steel, unless the file names another metal. */
+/** Takes the part's own material where the file names one that such a part can have. */
+void SetMaterial(const Material& own, bool is_possible, double usual_modulus, double usual_poisson,
+                 ElasticPart* elastic) {
+  const bool is_own = !own.is_standard_assumed && is_possible;
+  elastic->modulus = is_own ? own.youngs_modulus : usual_modulus;
+  elastic->poisson_ratio = is_own ? own.poisson_ratio : usual_poisson;
+}
+
 void SetSpringMaterial(const Part& part, ElasticPart* elastic) {
-  const Material& own = part.material;
-  const bool is_own = !own.is_standard_assumed && own.youngs_modulus > kSoftestSpring;
-  elastic->modulus = is_own ? own.youngs_modulus : kSpringModulus;
-  elastic->poisson_ratio = is_own ? own.poisson_ratio : kSpringPoisson;
+  SetMaterial(part.material, part.material.youngs_modulus > kSoftestSpring, kSpringModulus,
+              kSpringPoisson, elastic);
 }
 
 void SetSealMaterial(const Part& part, ElasticPart* elastic) {
-  const Material& own = part.material;
-  const bool is_own = !own.is_standard_assumed && own.youngs_modulus < kStiffestSeal;
-  elastic->modulus = is_own ? own.youngs_modulus : kSealModulus;
-  elastic->poisson_ratio = is_own ? own.poisson_ratio : kSealPoisson;
+  SetMaterial(part.material, part.material.youngs_modulus < kStiffestSeal, kSealModulus,
+              kSealPoisson, elastic);
 }
 
 void SetRound(const RoundSize& size, ElasticPart* elastic) {

@@ -183,7 +183,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   result.reason = reason;
   if (step.kind != SequenceStep::Kind::kAside) {
     result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
-    result.presses = was_seated ? ListPresses(step) : std::vector<PartPress>();
+    result.presses = was_seated ? ListPresses(step) : std::vector<PressedPair>();
   }
   result.passage = passages_.passage(step.occurrence);
   result.note = MakeNote(result);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -232,20 +233,17 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
   return text;
 }
 
-std::vector<PartPress> PartRun::ListPresses(const SequenceStep& step) const {
-  std::vector<PartPress> presses;
-  for (const PressedPair& pair : model().presses) {
-    if (pair.moved == step.occurrence) {
-      presses.push_back({pair.parts, pair.compression, pair.force, pair.is_radial, pair.source});
-    }
-  }
+std::vector<PressedPair> PartRun::ListPresses(const SequenceStep& step) const {
+  std::vector<PressedPair> presses;
+  std::copy_if(model().presses.begin(), model().presses.end(), std::back_inserter(presses),
+               [&step](const PressedPair& pair) { return pair.moved == step.occurrence; });
   return presses;
 }
 
-std::string PartRun::DescribePresses(const std::vector<PartPress>& presses) const {
-  const auto hardest =
-      std::max_element(presses.begin(), presses.end(),
-                       [](const PartPress& a, const PartPress& b) { return a.force < b.force; });
+std::string PartRun::DescribePresses(const std::vector<PressedPair>& presses) const {
+  const auto hardest = std::max_element(
+      presses.begin(), presses.end(),
+      [](const PressedPair& a, const PressedPair& b) { return a.force < b.force; });
   if (hardest == presses.end()) {
     return {};
   }

@@ -11,6 +11,7 @@
 
 #include "simulation/executors.h"
 #include "simulation/passage_watch.h"
+#include "simulation/pressed_pairs.h"
 #include "simulation/simulated_person.h"
 #include "simulation/simulation.h"
 
@@ -37,15 +38,6 @@ struct PartAllowance {
   haptics::GivingPeak force{};
 };
 
-/** What a part presses together in its place. */
-struct PartPress {
-  std::vector<product::OccurrenceId> parts;  ///< What is pressed, one behind the other.
-  double compression{0};                     ///< Compression of all of them [m].
-  double force{0};                           ///< True [N].
-  bool is_radial{false};                     ///< A hole or shaft presses it, all around.
-  std::string source;                        ///< Closed form and source of the force.
-};
-
 /** How one part fared. */
 struct PartResult {
   product::OccurrenceId occurrence;
@@ -53,7 +45,7 @@ struct PartResult {
   std::string reason;                     ///< Why not, when it is not seated.
   std::string note;                       ///< What was odd about it although it is; may be empty.
   std::vector<PartAllowance> allowances;  ///< It is in its place only by these.
-  std::vector<PartPress> presses;         ///< What it presses together.
+  std::vector<PressedPair> presses;       ///< What it presses together.
   double time{0};                         ///< Time from taking it up to letting go [s].
   double path{0};                         ///< [m]
   double peak_true{0};                    ///< [N]
@@ -143,10 +135,10 @@ class PartRun : public Sink {
   /** Lists what moves in a step is allowed with the parts that are in their places. */
   [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(const SequenceStep& step) const;
   /** Lists what moves in a step presses together in its place. */
-  [[nodiscard]] std::vector<PartPress> ListPresses(const SequenceStep& step) const;
+  [[nodiscard]] std::vector<PressedPair> ListPresses(const SequenceStep& step) const;
   /** Describes what is pressed hardest, as in "presses spring together by 3.00 mm: 82.5 N (G d^4 /
    (8 D^3 n), Wahl)"; empty where it is nothing. */
-  [[nodiscard]] std::string DescribePresses(const std::vector<PartPress>& presses) const;
+  [[nodiscard]] std::string DescribePresses(const std::vector<PressedPair>& presses) const;
   /** Names the deepest allowance of each kind, with its depth. */
   [[nodiscard]] std::string DescribeAllowances(const std::vector<PartAllowance>& allowances) const;
   /** Counts the parts in their place that hold what moves in a step, where it is to go. */

@@ -8,6 +8,7 @@
 #include "fits/pressed_parts.h"
 #include "mates/elastic_parts.h"
 #include "product/mesh_ray.h"
+#include "simulation/insert_walk.h"
 
 namespace hvas::simulation {
 namespace {
@@ -16,8 +17,6 @@ using product::ElasticPart;
 using product::OccurrenceId;
 using product::Product;
 
-constexpr double kAlongWay = 0.985;     // Cosine of 10 degrees between way and axis. A choice.
-constexpr double kLeastPressed = 1e-6;  // [m]: less is no more than the file resolves. A choice.
 constexpr double kLargestGap = 0.2e-3;  // [m] between parts that touch as drawn. A choice.
 constexpr int kTableSteps = 128;        // The force is linear between them. A choice.
 
@@ -84,7 +83,7 @@ struct Ends {
 class PressSearch {
  public:
   PressSearch(const Product& product, const Sequence& sequence)
-      : product_(product), sequence_(sequence), is_placed_(product.occurrences.size(), false) {
+      : product_(product), sequence_(sequence) {
     for (const ElasticPart& part : product.elastic) {
       if (IsPressedAlongAxis(part.kind) && part.occurrence.index() < sequence.neighbours.size()) {
         AddEnds(part);
@@ -96,20 +95,13 @@ class PressSearch {
     if (ends_.empty()) {
       return {};
     }
-    for (const SequenceStep& step : sequence_.steps) {
-      std::vector<OccurrenceId> unit = step.members;
-      unit.push_back(step.occurrence);
-      if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
-        for (const auto& [id, ends] : ends_) {
-          for (const double sign : {-1.0, 1.0}) {
-            FindPress(step, unit, id, sign);
-          }
+    WalkInserts(product_, sequence_, [this](const InsertStep& insert) {
+      for (const auto& [id, ends] : ends_) {
+        for (const double sign : {-1.0, 1.0}) {
+          FindPress(insert, id, sign);
         }
       }
-      for (const OccurrenceId id : unit) {
-        is_placed_[id.index()] = true;
-      }
-    }
+    });
     return std::move(pairs_);
   }
 
@@ -144,24 +136,21 @@ class PressSearch {
   }
 
   /** Finds whether a step presses a part at one of its ends. */
-  void FindPress(const SequenceStep& step, const std::vector<OccurrenceId>& unit, OccurrenceId id,
-                 double sign) {
-    const auto is_moved = [&unit](OccurrenceId part) {
-      return std::find(unit.begin(), unit.end(), part) != unit.end();
-    };
-    const bool is_own = is_moved(id);
-    if (!is_own && !is_placed_[id.index()]) {
+  void FindPress(const InsertStep& insert, OccurrenceId id, double sign) {
+    const SequenceStep& step = *insert.step;
+    const bool is_own = insert.Moves(id);
+    if (!is_own && !insert.HasPlaced(id)) {
       return;
     }
     // What moves comes onto the end, or the end comes onto what is in its place.
     const double along = -step.extraction_W.dot(sign * AxisOf(id));
-    if (is_own ? along < kAlongWay : along > -kAlongWay) {
+    if (is_own ? along < kAlongAxis : along > -kAlongAxis) {
       return;
     }
     const std::vector<OccurrenceId>& met = ends_.at(id).at(sign);
     const auto presser = std::find_if(met.begin(), met.end(), [&](OccurrenceId part) {
       return !IsElastic(part) &&
-             (is_own ? is_placed_[part.index()] && !is_moved(part) : is_moved(part));
+             (is_own ? insert.HasPlaced(part) && !insert.Moves(part) : insert.Moves(part));
     });
     if (presser == met.end()) {
       return;
@@ -176,7 +165,8 @@ class PressSearch {
       pair.compression += mates::CalcCompression(*FindElastic(product_, at));
       const std::vector<OccurrenceId>& behind = ends_.at(at).at(end);
       const auto next = std::find_if(behind.begin(), behind.end(), [&](OccurrenceId part) {
-        const bool is_there = is_own ? is_moved(part) : is_placed_[part.index()] && !is_moved(part);
+        const bool is_there =
+            is_own ? insert.Moves(part) : insert.HasPlaced(part) && !insert.Moves(part);
         return is_there &&
                std::find(pair.parts.begin(), pair.parts.end(), part) == pair.parts.end();
       });
@@ -221,7 +211,6 @@ class PressSearch {
 
   const Product& product_;
   const Sequence& sequence_;
-  std::vector<bool> is_placed_;
   std::map<OccurrenceId, Ends> ends_;
   std::vector<PressedPair> pairs_;
 };

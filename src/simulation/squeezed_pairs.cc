@@ -7,6 +7,7 @@
 #include "fits/elastic_parts.h"
 #include "fits/friction.h"
 #include "simulation/fit_of_mate.h"
+#include "simulation/insert_walk.h"
 #include "simulation/pressed_pairs.h"
 
 namespace hvas::simulation {
@@ -18,10 +19,8 @@ using product::Mate;
 using product::OccurrenceId;
 using product::Product;
 
-constexpr double kAlongMate = 0.985;    // Cosine of 10 degrees between way and axis. A choice.
-constexpr double kLeastSqueeze = 1e-6;  // [m]: less is no more than the file resolves. A choice.
-constexpr double kPinYield = 1.4e9;     // [Pa]: ISO 8752 has 420 to 520 HV, times 3.2. A choice.
-constexpr int kSqueezeSteps = 120;      // Of a curve; it is a spline. A choice.
+constexpr double kPinYield = 1.4e9;  // [Pa]: ISO 8752 has 420 to 520 HV, times 3.2. A choice.
+constexpr int kSqueezeSteps = 120;   // Of a curve; it is a spline. A choice.
 
 /** Whether ISO 286 has the fit of a mate, whose force then counts. */
 bool IsFit(const Mate& mate) {
@@ -79,25 +78,18 @@ double CalcEngaged(const Mate& mate, double travel) {
 class SqueezeSearch {
  public:
   SqueezeSearch(const Product& product, const Sequence& sequence)
-      : product_(product), sequence_(sequence), is_placed_(product.occurrences.size(), false) {}
+      : product_(product), sequence_(sequence) {}
 
   std::vector<PressedPair> Run() {
     CollectMates();
     if (mates_.empty()) {
       return {};
     }
-    for (const SequenceStep& step : sequence_.steps) {
-      std::vector<OccurrenceId> unit = step.members;
-      unit.push_back(step.occurrence);
-      if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
-        for (const ElasticMate& side : mates_) {
-          FindSqueeze(step, unit, side);
-        }
+    WalkInserts(product_, sequence_, [this](const InsertStep& insert) {
+      for (const ElasticMate& side : mates_) {
+        FindSqueeze(insert, side);
       }
-      for (const OccurrenceId id : unit) {
-        is_placed_[id.index()] = true;
-      }
-    }
+    });
     return std::move(pairs_);
   }
 
@@ -121,11 +113,9 @@ class SqueezeSearch {
 
   /** The room between the hole and the shaft of a sleeve, both in their place or moved; 0 where one
    is not there. */
-  [[nodiscard]] double FindGap(const ElasticMate& side,
-                               const std::vector<OccurrenceId>& unit) const {
+  [[nodiscard]] double FindGap(const ElasticMate& side, const InsertStep& insert) const {
     for (const ElasticMate& opposite : mates_) {
-      const bool is_there = is_placed_[opposite.other.index()] ||
-                            std::find(unit.begin(), unit.end(), opposite.other) != unit.end();
+      const bool is_there = insert.HasPlaced(opposite.other) || insert.Moves(opposite.other);
       if (opposite.part == side.part && opposite.is_shaft != side.is_shaft && is_there) {
         const Mate& in_hole = side.is_shaft ? *side.mate : *opposite.mate;
         const Mate& on_shaft = side.is_shaft ? *opposite.mate : *side.mate;
@@ -135,21 +125,18 @@ class SqueezeSearch {
     return 0;
   }
 
-  void FindSqueeze(const SequenceStep& step, const std::vector<OccurrenceId>& unit,
-                   const ElasticMate& side) {
-    const auto is_moved = [&unit](OccurrenceId part) {
-      return std::find(unit.begin(), unit.end(), part) != unit.end();
-    };
+  void FindSqueeze(const InsertStep& insert, const ElasticMate& side) {
+    const SequenceStep& step = *insert.step;
     const OccurrenceId own = side.part->occurrence;
-    const bool is_own = is_moved(own);
-    if (is_own == is_moved(side.other) || !is_placed_[(is_own ? side.other : own).index()]) {
+    const bool is_own = insert.Moves(own);
+    if (is_own == insert.Moves(side.other) || !insert.HasPlaced(is_own ? side.other : own)) {
       return;
     }
     const Mate& mate = *side.mate;
     const Vec3 axis_W = product_.occurrences[mate.a.occurrence.index()].X_WB.q() *
                         (mate.a.X_BM.q() * Vec3::UnitZ());
     const double along = step.extraction_W.dot(axis_W);
-    if (std::abs(along) < kAlongMate) {
+    if (std::abs(along) < kAlongAxis) {
       return;
     }
     const bool shaft_moves = is_own == side.is_shaft;
@@ -158,10 +145,11 @@ class SqueezeSearch {
     if (!(length > 0)) {
       return;
     }
-    const Squeeze squeeze = side.part->kind == ElasticKind::kSlitPin
-                                ? CalcPinSqueeze(*side.part, mate.hole_radius, length)
-                                : CalcSleeveSqueeze(*side.part, side, length, FindGap(side, unit));
-    if (!(squeeze.given > kLeastSqueeze) || !(squeeze.stiffness > 0)) {
+    const Squeeze squeeze =
+        side.part->kind == ElasticKind::kSlitPin
+            ? CalcPinSqueeze(*side.part, mate.hole_radius, length)
+            : CalcSleeveSqueeze(*side.part, side, length, FindGap(side, insert));
+    if (!(squeeze.given > kLeastPressed) || !(squeeze.stiffness > 0)) {
       return;
     }
     AddPair(step, side, squeeze, direction);
@@ -198,7 +186,6 @@ class SqueezeSearch {
 
   const Product& product_;
   const Sequence& sequence_;
-  std::vector<bool> is_placed_;
   std::vector<ElasticMate> mates_;
   std::vector<PressedPair> pairs_;
 };

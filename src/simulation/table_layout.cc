@@ -27,6 +27,15 @@ spatial::Box DrawnBox(const Product& product, OccurrenceId id) {
   return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
 }
 
+/** The box around all that a step moves, as drawn. */
+spatial::Box BoxOfStep(const Product& product, const SequenceStep& step) {
+  spatial::Box box = DrawnBox(product, step.occurrence);
+  for (const OccurrenceId member : step.members) {
+    box.Add(DrawnBox(product, member));
+  }
+  return box;
+}
+
 /** Gives every subassembly that is put together first its place on the shelf: beside the product,
  on the other side than the table's parts. Returns the largest radius of what is carried. */
 double PlaceOnShelf(Model* model) {
@@ -39,12 +48,8 @@ double PlaceOnShelf(Model* model) {
   double widest = 0;
   for (const SequenceStep& step : model->sequence.steps) {
     if (step.kind == SequenceStep::Kind::kPark) {
-      spatial::Box& box = boxes[step.occurrence];
-      box = DrawnBox(product, step.occurrence);
-      for (const OccurrenceId member : step.members) {
-        box.Add(DrawnBox(product, member));
-      }
-      widest = std::max(widest, box.size().norm());
+      boxes[step.occurrence] = BoxOfStep(product, step);
+      widest = std::max(widest, boxes[step.occurrence].size().norm());
     }
   }
   reach = std::max(reach, 0.5 * widest);
@@ -64,10 +69,7 @@ double PlaceOnShelf(Model* model) {
  its way around the product (SimulatedPerson). */
 double CalcLowest(const Model& model, const SequenceStep& step) {
   const Product& product = *model.product;
-  spatial::Box box = DrawnBox(product, step.occurrence);
-  for (const OccurrenceId member : step.members) {
-    box.Add(DrawnBox(product, member));
-  }
+  const spatial::Box box = BoxOfStep(product, step);
   const spatial::Pose& X_WB_goal = product.occurrences[step.occurrence.index()].X_WB;
   const Vec3 grip = X_WB_goal * model.bodies[step.occurrence.index()].mass.p_BoBcm_B;
   const double radius = (box.centre() - grip).norm() + 0.5 * box.size().norm();

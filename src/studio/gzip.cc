@@ -26,8 +26,8 @@ std::string Gzip(std::string_view bytes) {
   return packed;
 }
 
-bool AcceptsGzip(std::string_view accepted) {
-  return accepted.find("gzip") != std::string_view::npos;
+bool AcceptsCoding(std::string_view accepted, std::string_view coding) {
+  return accepted.find(coding) != std::string_view::npos;
 }
 
 }  // namespace hvas::studio

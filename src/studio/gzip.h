@@ -9,7 +9,7 @@ namespace hvas::studio {
  same result. */
 [[nodiscard]] std::string Gzip(std::string_view bytes);
 
-/** Whether a value of Accept-Encoding (RFC 9110, section 12.5.3) names gzip. */
-[[nodiscard]] bool AcceptsGzip(std::string_view accepted);
+/** Whether a value of Accept-Encoding (RFC 9110, section 12.5.3) names a coding: "gzip", "br". */
+[[nodiscard]] bool AcceptsCoding(std::string_view accepted, std::string_view coding);
 
 }  // namespace hvas::studio

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kJsonType = "application/json";
 constexpr const char* kGlbType = "model/gltf-binary";
+constexpr const char* kGzip = "gzip";
 
 Unexpected FailNotFound(std::string_view path) {
   return Fail(ErrorCode::kNotFound, "there is no such resource", std::string(path), "");
@@ -51,11 +52,11 @@ Response MakeGlbResponse(std::string_view bytes, const std::string& digest,
 /** What is written for this request alone goes compressed to whoever takes it so. */
 Result<Response> Compress(Result<Response> made, std::string_view accepted) {
   constexpr std::size_t kLeast = 1024;  // Less fits into one packet of a network: a choice.
-  if (made && AcceptsGzip(accepted) && made->bytes.size() >= kLeast) {
+  if (made && AcceptsCoding(accepted, kGzip) && made->bytes.size() >= kLeast) {
     const auto packed = std::make_shared<const std::string>(Gzip(made->bytes));
     made->bytes = *packed;
     made->owner = packed;
-    made->encoding = "gzip";
+    made->encoding = kGzip;
   }
   return made;
 }
@@ -78,9 +79,9 @@ Result<Response> MakeModelResponse(const LiveScene& live, std::string_view name,
     return Fail(ErrorCode::kNotFound, "this model is no longer open", std::string(name),
                 "request /api/scene again");
   }
-  if (AcceptsGzip(accepted)) {
+  if (AcceptsCoding(accepted, kGzip)) {
     Response response = MakeGlbResponse(*scene->glb_gzip, scene->glb_hash, scene);
-    response.encoding = "gzip";
+    response.encoding = kGzip;
     return response;
   }
   return MakeGlbResponse(*scene->glb, scene->glb_hash, scene);
@@ -139,14 +140,14 @@ Result<Response> MakeAssetResponse(std::string_view path, std::string_view accep
   response.etag = asset->etag;
   response.is_immutable = asset->is_immutable;
   const auto takes = [accepted](std::string_view coding, std::string_view bytes) {
-    return accepted.find(coding) != std::string_view::npos && !bytes.empty();
+    return AcceptsCoding(accepted, coding) && !bytes.empty();
   };
   if (takes("br", asset->brotli)) {
     response.bytes = asset->brotli;
     response.encoding = "br";
-  } else if (takes("gzip", asset->gzip)) {
+  } else if (takes(kGzip, asset->gzip)) {
     response.bytes = asset->gzip;
-    response.encoding = "gzip";
+    response.encoding = kGzip;
   }
   return response;
 }

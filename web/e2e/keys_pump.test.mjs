@@ -16,7 +16,9 @@ import {
   waitForCalm,
   waitForPicture,
   waitForPlacement,
+  waitForState,
   waitForStill,
+  waitForView,
   withStudio,
 } from "./harness.mjs";
 
@@ -98,8 +100,10 @@ describe("the whole gear pump", () => {
     await waitForCalm(page);
     assert.deepEqual(await findBarriers(page), []);
     await takePicture(page, "keys_begin");
-    const axes = await lookAtAxes(page);
     for (const step of scene.steps.filter(({ kind }) => kind === "insert")) {
+      await waitForState(page, ({ step: { index } }) => scene.steps[index] === step);
+      await waitForView(page);  // which goes to the part whose turn it is, and changes what a key press moves it by
+      const axes = await lookAtAxes(page);
       await insertByKeys(page, axes, step, scene.occurrences[step.occurrence].goal.p);
     }
     await takePicture(page, "keys_done");

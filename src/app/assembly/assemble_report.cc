@@ -86,7 +86,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
   }
   if (!part.presses.empty()) {
     json["presses"] = nlohmann::ordered_json::array();
-    for (const simulation::PartPress& press : part.presses) {
+    for (const simulation::PressedPair& press : part.presses) {
       nlohmann::ordered_json parts = nlohmann::ordered_json::array();
       for (const product::OccurrenceId id : press.parts) {
         parts.push_back(PathOf(model, id));

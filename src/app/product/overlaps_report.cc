@@ -98,7 +98,6 @@ std::vector<ElasticPart> ListElastic(const Product& product, const Selection& se
 }
 
 Json ToJson(const ElasticPart& part) {
-  constexpr double kSmall = 1e-6;  // [m]: the rate is that of the first micrometre. A choice.
   const auto pressed = mates::MakePressedPart(part);
   const double compression = mates::CalcCompression(part);
   return {{"occurrence", part.occurrence.value()},
@@ -111,8 +110,7 @@ Json ToJson(const ElasticPart& part) {
           {"area_mm2", part.area / (units::kMetresPerMillimetre * units::kMetresPerMillimetre)},
           {"free_size_mm", ToMm(part.free_size)},
           {"youngs_modulus_pa", part.modulus},
-          {"stiffness_n_per_m",
-           pressed ? Json(fits::CalcPressForce(*pressed, kSmall) / kSmall) : Json()},
+          {"stiffness_n_per_m", pressed ? Json(fits::CalcPressRate(*pressed)) : Json()},
           {"compression_mm", ToMm(compression)},
           {"force_n", pressed ? Json(fits::CalcPressForce(*pressed, compression)) : Json()},
           {"reason", part.reason},

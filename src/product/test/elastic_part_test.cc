@@ -11,6 +11,7 @@
 
 #include "product/product.h"
 #include "product/test/coil_mesh.h"
+#include "product/test/mesh_mass.h"
 
 namespace hvas::product {
 namespace {
@@ -19,24 +20,7 @@ constexpr double kElasticMm = 1e-3;
 
 /** Volume, inertia and box of a part's mesh, and one face of all its triangles. */
 void MeasureMesh(Part* part) {
-  double volume = 0;
-  Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
-  for (const auto& t : part->mesh.triangles) {
-    const Vec3& a = part->mesh.vertices[t[0]];
-    const Vec3& b = part->mesh.vertices[t[1]];
-    const Vec3& c = part->mesh.vertices[t[2]];
-    const double piece = a.dot(b.cross(c)) / 6;
-    const Vec3 sum = a + b + c;
-    volume += piece;
-    first += piece / 4 * sum;
-    second += piece / 20 *
-              (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
-  }
-  part->mass.volume = volume;
-  part->mass.p_BoBcm_B = first / volume;
-  const Mat3 central = second - volume * part->mass.p_BoBcm_B * part->mass.p_BoBcm_B.transpose();
-  part->mass.I_BBcm_B = central.trace() * Mat3::Identity() - central;
+  part->mass = testing::CalcMass(part->mesh, 1);
   for (const Vec3& p : part->mesh.vertices) {
     part->box_B.Add(p);
   }

@@ -126,8 +126,8 @@ std::shared_ptr<const Model> CompileProduct(Product product) {
   return model ? *model : nullptr;
 }
 
-PartResult Assemble(const std::shared_ptr<const Model>& model) {
-  testing::Session session(model);
+PartResult Assemble(const std::shared_ptr<const Model>& model, std::uint64_t seed = 1) {
+  testing::Session session(model, seed);
   (void)RunLockstep(session.MakeExecution(60));
   return session.run.results().back();
 }
@@ -354,9 +354,15 @@ TEST(GiveTest, RingGoesOverALandByGivingAsMuchAsItHasTo) {
   const double along = across * fits::CalcSlidingRatio(0.15, std::sqrt(3.0));
   EXPECT_GT(ring.allowances[0].force.in, along);
   EXPECT_LT(ring.allowances[0].force.in, 1.7 * along);
-  // The edge is so short that a tick may pass over its largest force.
-  EXPECT_GT(ring.fit_true, 0.6 * ring.allowances[0].force.in);
-  EXPECT_LT(ring.fit_true, 1.01 * ring.allowances[0].force.in);
+  // The edge is so short that a tick may pass over its largest force: of ten persons one meets it.
+  double most = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const PartResult other = Assemble(model, seed);
+    EXPECT_TRUE(other.is_seated) << seed << ": " << other.reason;
+    EXPECT_LT(other.fit_true, 1.01 * ring.allowances[0].force.in) << seed;
+    most = std::max(most, other.fit_true);
+  }
+  EXPECT_GT(most, 0.9 * ring.allowances[0].force.in);
 }
 
 TEST(GiveTest, RingThatMayGiveTooLittleOrNotAtAllStaysOut) {

@@ -5,36 +5,12 @@
 
 #include "mates/infer.h"
 #include "product/features.h"
+#include "product/test/mesh_mass.h"
 
 namespace hvas::simulation::testing {
 namespace {
 
 constexpr double kDeviation = 20e-6;  // [m] of chords from circles
-
-/** Volume integrals over the tetrahedra from the origin to each triangle. */
-product::MassProperties CalcMass(const product::Mesh& mesh, double density) {
-  double volume = 0;
-  Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();  // integral of p p^T
-  for (const auto& t : mesh.triangles) {
-    const Vec3& a = mesh.vertices[t[0]];
-    const Vec3& b = mesh.vertices[t[1]];
-    const Vec3& c = mesh.vertices[t[2]];
-    const double piece = a.dot(b.cross(c)) / 6;
-    const Vec3 sum = a + b + c;
-    volume += piece;
-    first += piece / 4 * sum;
-    second += piece / 20 *
-              (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
-  }
-  product::MassProperties mass;
-  mass.volume = volume;
-  mass.mass = density * volume;
-  mass.p_BoBcm_B = first / volume;
-  const Mat3 central = second - volume * mass.p_BoBcm_B * mass.p_BoBcm_B.transpose();
-  mass.I_BBcm_B = density * (central.trace() * Mat3::Identity() - central);
-  return mass;
-}
 
 product::Face MeasureFace(const product::Mesh& mesh, std::uint32_t first, std::uint32_t count,
                           const spatial::Surface& surface) {
@@ -88,7 +64,7 @@ PartId AddPart(Product* product, const std::string& name, const contact::ShapeSo
     part.box_B.Add(part.faces.back().box_B);
     first += count;
   }
-  part.mass = CalcMass(part.mesh, part.material.density);
+  part.mass = product::testing::CalcMass(part.mesh, part.material.density);
   product::BuildFeatures(&part);
   product->parts.push_back(std::move(part));
   return product->parts.back().id;

@@ -35,9 +35,9 @@ TEST(GzipTest, BytesComeBackAsTheyWere) {
 }
 
 TEST(GzipTest, WhatABrowserAcceptsIsReadFromItsHeader) {
-  EXPECT_TRUE(AcceptsGzip("gzip, deflate, br"));
-  EXPECT_FALSE(AcceptsGzip("br"));
-  EXPECT_FALSE(AcceptsGzip(""));
+  EXPECT_TRUE(AcceptsCoding("gzip, deflate, br", "gzip"));
+  EXPECT_FALSE(AcceptsCoding("br", "gzip"));
+  EXPECT_FALSE(AcceptsCoding("", "gzip"));
 }
 
 }  // namespace

@@ -143,7 +143,6 @@ export const deView: Record<keyof typeof enView, string> = {
   "phone.parts": "Teile",
   "phone.plots": "Kräfte",
   "phone.close": "Diesen Bereich schließen",
-  "log.detail": "Einzelheiten",
   "log.state.near": "{part} ist nahe am Platz",
   "log.state.captured": "{part} wird an seinen Platz gezogen",
   "log.state.mating": "{part} geht hinein",

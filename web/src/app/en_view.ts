@@ -141,7 +141,6 @@ export const enView = {
   "phone.parts": "Parts",
   "phone.plots": "Forces",
   "phone.close": "Close this sheet",
-  "log.detail": "Detail",
   "log.state.near": "{part} is near its place",
   "log.state.captured": "{part} is being drawn to its place",
   "log.state.mating": "{part} goes in",

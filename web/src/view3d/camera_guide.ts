@@ -68,14 +68,13 @@ export class CameraGuide {
     const { product, hand, rig } = this.viewport;
     const step = this.studio.store.expected.peek();
     const place = step === null ? [] : product.placeOf(step.occurrence);
-    const isOwn = this.view.followsSteps.peek() && this.studio.store.study.peek() === null && this.studio.store.replay.peek() === null;
-    if (step === null || place.length === 0 || !isOwn || hand.isBusy || this.view.explode.peek() > 0 || this.view.apart.peek() !== null) {
+    if (step === null || place.length === 0 || !this.isWanted || hand.isBusy || this.view.explode.peek() > 0 || this.view.apart.peek() !== null) {
       return;
     }
     const part = product.outline([step.occurrence]);
     if (isSure || !this.isSeen(part) || !this.isSeen(place)) {
       // What is there already says where the place is, unless the part were too small beside it.
-      const there = this.viewport.product.outline(this.listPlaced());
+      const there = product.outline(this.listPlaced());
       const isSmall = reachOf(part) * kMostTimesLarger < reachOf(there);
       rig.fit([...part, ...place, ...(isSmall ? [] : there)]);
       this.viewport.invalidate();
@@ -91,6 +90,12 @@ export class CameraGuide {
     }
   }
 
+  /** Neither in a study nor in a recording, whose eye is the user's own. */
+  private get isWanted(): boolean {
+    const { study, replay } = this.studio.store;
+    return this.view.followsSteps.peek() && study.peek() === null && replay.peek() === null;
+  }
+
   private listPlaced(): number[] {
     const { placements, scene } = this.studio.store;
     const all = scene.peek()?.occurrences ?? [];
@@ -101,8 +106,7 @@ export class CameraGuide {
     const isFinished = isDone && !this.wasDone;
     this.wasDone = isDone;
     this.roundLeft = 0;
-    const isOwn = this.studio.store.study.peek() === null && this.studio.store.replay.peek() === null;
-    if (isFinished && isOwn && this.view.followsSteps.peek()) {
+    if (isFinished && this.isWanted) {
       this.viewport.rig.view("iso", this.viewport.product.outline());
       this.roundLeft = this.view.isCalm.peek() ? 0 : kRoundS;
       this.viewport.invalidate();

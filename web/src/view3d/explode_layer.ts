@@ -81,10 +81,6 @@ export class ExplodeLayer {
     this.openedMs = this.openedMs === null ? null : -Infinity;
   }
 
-  get isOpening(): boolean {
-    return this.openedMs !== null;
-  }
-
   /** @param poses  Where the parts are. @return Whether anything was drawn elsewhere. */
   update(poses: ReadonlyMap<number, Pose>, parts: Parts): boolean {
     if (this.openedMs !== null) {
