@@ -9,6 +9,7 @@
 #include "mates/mate_kind.h"
 #include "mates/prismatic_fits.h"
 #include "simulation/mate_way.h"
+#include "simulation/model.h"
 
 namespace hvas::simulation {
 namespace {
@@ -44,18 +45,25 @@ bool IsMouthHigh(const ActualFacesInput& input, const Mate& mate) {
   return way_W.isZero() || way_W.dot(z_W) > 0;
 }
 
+/** The least of S over the length of a fit [m]. */
+double LeastClearance(const fits::FitForce& fit) {
+  const auto clearances = fit.clearances();
+  return *std::min_element(clearances.begin(), clearances.end());
+}
+
 /** The offsets of a slot's first wall and of the opposite one, for a tongue that is `tongue` larger
  on each side and lies where it is drawn. Walls are planes: the least clearance counts for all of
- their length. Where the fit leaves none, it answers for the force, and contact just lets the tongue
+ their length. Where the fit leaves none and answers for the force, contact just lets the tongue
  pass. */
-std::array<double, 2> SlotOffsets(const product::Product& product, const Mate& mate,
+std::array<double, 2> SlotOffsets(const ActualFacesInput& input, const Mate& mate,
                                   const fits::FitForce* fit, double tongue) {
   const double drawn_gap = mate.hole_radius - mate.shaft_radius;
-  const double play =
-      std::max(kRoom, fit != nullptr ? fit->CalcRadialPlay(fit->length()) : drawn_gap);
-  const double drawn_shift = mates::CalcDrawnShift(product, mate);
+  const double room = fit != nullptr ? LeastClearance(*fit) : drawn_gap;
+  const double play = fit == nullptr || input.fits_answer ? std::max(kRoom, room) : room;
+  const double drawn_shift = mates::CalcDrawnShift(*input.product, mate);
   // The tongue stays within its play where it is drawn beside it, as in the tick's guidance.
-  const double excess = drawn_shift - std::clamp(drawn_shift, -play, play);
+  const double most = std::max(0.0, play);
+  const double excess = drawn_shift - std::clamp(drawn_shift, -most, most);
   return {drawn_gap + excess - tongue - play, drawn_gap - excess - tongue - play};
 }
 
@@ -123,8 +131,7 @@ bool IsTooLarge(const std::vector<double>& stations) {
 }
 
 bool LeavesRoom(const fits::FitForce& fit) {
-  const auto clearances = fit.clearances();
-  return std::all_of(clearances.begin(), clearances.end(), [](double s) { return s > 0; });
+  return LeastClearance(fit) > 0;
 }
 
 class Collector {
@@ -187,7 +194,7 @@ class Collector {
     }
     const double cosine = FlankCosine(product, mate.a);
     const double offset = ShaftOffset(mate, fit, cosine);
-    auto [low, high] = SlotOffsets(product, mate, fit, offset / cosine);
+    auto [low, high] = SlotOffsets(input_, mate, fit, offset / cosine);
     low *= cosine;
     high *= cosine;
     if (IsTooLarge({offset, low, high})) {
@@ -267,6 +274,19 @@ class Collector {
 
 }  // namespace
 
+ActualFacesInput MakeActualFacesInput(const Model& model) {
+  ActualFacesInput input;
+  input.product = model.product.get();
+  input.sequence = &model.sequence;
+  for (const Body& body : model.bodies) {
+    input.shapes.push_back(body.shape);
+  }
+  for (const ModelMate& mate : model.mates) {
+    input.fits.push_back(mate.fit);
+  }
+  return input;
+}
+
 std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     const ActualFacesInput& input, Diagnostics* diagnostics) {
   Collector collector(input);
@@ -276,7 +296,8 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     if (!mates::HasFit(mate.kind)) {
       continue;
     }
-    if (mate.kind == product::MateKind::kPrismatic || (fit != nullptr && LeavesRoom(*fit))) {
+    if (mate.kind == product::MateKind::kPrismatic ||
+        (fit != nullptr && (LeavesRoom(*fit) || !input.fits_answer))) {
       sized.push_back(&mate);
     } else {
       collector.KeepAsDrawn(mate);

@@ -12,13 +12,20 @@
 
 namespace hvas::simulation {
 
+struct Model;
+
 /** What the faces as made are found from; by OccurrenceId and by MateId. */
 struct ActualFacesInput {
   const product::Product* product{nullptr};
   std::vector<std::shared_ptr<const contact::Shape>> shapes;
   std::vector<std::shared_ptr<const fits::FitForce>> fits;  ///< Null where there is none.
   const Sequence* sequence{nullptr};  ///< Says which end of a hole is its mouth, and has reliefs.
+  /** Fits that leave no room answer for their force; else contact has their interference. */
+  bool fits_answer{true};
 };
+
+/** What the faces of a model's parts are made from. Refers to the model. */
+[[nodiscard]] ActualFacesInput MakeActualFacesInput(const Model& model);
 
 /** The faces of the parts as made, so that contact has the clearance that the fits say. A fit that
  leaves room along its whole length, S(l) > 0, moves its two faces: the shaft's to its actual size,
@@ -28,9 +35,10 @@ struct ActualFacesInput {
  the first mate (by id) that gives it a size; a further mate on it moves the other face, or, where
  both have their size, neither. Faces that also have an axis-hole mate with interference, a thread
  or no fit stay as drawn whatever other mates say: what answers for them there takes them so; but a
- hole that is drawn narrower than the shaft pressed into it is widened to let its end pass. So do
- offsets beyond FaceOffsets::kLargest, with a diagnostic. All faces give way by Sequence::reliefs.
- Returned by OccurrenceId; null: as drawn. */
+ hole that is drawn narrower than the shaft pressed into it is widened to let its end pass. Where
+ fits do not answer, interference moves the faces as room does. Offsets are not made either beyond
+ FaceOffsets::kLargest, with a diagnostic. All faces give way by Sequence::reliefs. Returned by
+ OccurrenceId; null: as drawn. */
 [[nodiscard]] std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
     const ActualFacesInput& input, Diagnostics* diagnostics);
 

@@ -4,10 +4,31 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/actual_faces.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/load_shedder.h"
 
 namespace hvas::simulation {
+namespace {
+
+/** The faces that contact has, by body: as made. By contact alone nothing but the faces answers for
+ a fit that leaves no room, and they have its interference. */
+std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeContactFaces(
+    const Model& model, haptics::Condition condition) {
+  if (condition == haptics::Condition::kCollision) {
+    ActualFacesInput input = MakeActualFacesInput(model);
+    input.fits_answer = false;
+    Diagnostics known;  // Those of the faces as made, which the model's own have told of.
+    return MakeActualFaces(input, &known);
+  }
+  std::vector<std::shared_ptr<const contact::FaceOffsets>> faces;
+  for (const Body& body : model.bodies) {
+    faces.push_back(body.faces);
+  }
+  return faces;
+}
+
+}  // namespace
 
 HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, std::size_t hands,
                        Handover* handover)
@@ -15,9 +36,10 @@ HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, 
   for (std::size_t i = 0; i < hands; ++i) {
     hands_.emplace_back(i, options[i], &scene_);
   }
+  const auto faces = MakeContactFaces(model, options->condition);
   for (const Body& body : model.bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
-    scene_.SetOffsets(id, body.faces);
+    scene_.SetOffsets(id, faces[id.index()]);
     for (Hand& hand : hands_) {
       hand.tick.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
                                    SurfaceOf(model.product->part_of(body.occurrence).material)});

@@ -16,8 +16,9 @@ inline constexpr double kLeastPressed = 1e-6;
 /** The parts that are there while a straight step brings its part in, and those that move. */
 struct InsertStep {
   const SequenceStep* step{nullptr};
-  std::vector<product::OccurrenceId> unit;   ///< The parts that move as one.
-  const std::vector<bool>* placed{nullptr};  ///< By occurrence: in its place before the step.
+  std::vector<product::OccurrenceId> unit;  ///< The parts that move as one.
+  const std::vector<bool>* placed{
+      nullptr};  ///< Whether a part, by occurrence, is in its place before the step.
 
   [[nodiscard]] bool Moves(product::OccurrenceId id) const {
     return std::find(unit.begin(), unit.end(), id) != unit.end();

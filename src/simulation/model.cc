@@ -68,16 +68,7 @@ void MakeFits(Model* model, Diagnostics* diagnostics) {
 
 /** Contact has the clearance that the fits say, where they leave any. */
 void GiveActualFaces(Model* model, Diagnostics* diagnostics) {
-  ActualFacesInput input;
-  input.product = model->product.get();
-  input.sequence = &model->sequence;
-  for (const Body& body : model->bodies) {
-    input.shapes.push_back(body.shape);
-  }
-  for (const ModelMate& mate : model->mates) {
-    input.fits.push_back(mate.fit);
-  }
-  const auto faces = MakeActualFaces(input, diagnostics);
+  const auto faces = MakeActualFaces(MakeActualFacesInput(*model), diagnostics);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     model->bodies[i].faces = faces[i];
   }

@@ -399,8 +399,10 @@ export function poseOf(page, occurrence) {
   return page.evaluate((id) => window.hvas.pose(id), occurrence);
 }
 
-/** Until a part lies, hangs or is held still; its pose. */
-export function waitForRest(page, occurrence, options = {}) {
+/** Until a part lies, hangs or is held still, after all that the page was told to do; its pose. */
+export async function waitForRest(page, occurrence, options = {}) {
+  await nextFrame(page); // What the pointer did is sent by pictures.
+  await waitForAnswer(page);
   return waitForStill(page, () => poseOf(page, occurrence), options);
 }
 

@@ -119,6 +119,7 @@ describe("two operators", () => {
     await waitForState(first, (state) => !state.hasLease);
     assert.equal(await first.getByTestId("lease-asked").count(), 0);
 
+    await waitForView(second);
     const before = await poseOf(second, kShaft);
     const at = await second.evaluate((id) => window.hvas.screen(id), kShaft);
     await second.mouse.move(at.x, at.y);
