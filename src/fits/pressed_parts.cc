@@ -54,7 +54,7 @@ double CalcWithin(const StatedSpring& spring, double s) noexcept {
   return spring.stiffness * s;
 }
 
-double CalcUnlimited(const PressedPart& part, double s) noexcept {
+double CalcUnlimited(const PressedPart& part, double s) {
   return std::visit([s](const auto& p) { return CalcWithin(p, s); }, part);
 }
 
@@ -112,7 +112,7 @@ double CalcPadModulus(const FlatGasket& gasket) noexcept {
   return LimitByBulk(gasket.modulus * (1 + 2 * shape * shape));
 }
 
-double CalcPressForce(const PressedPart& part, double compression) noexcept {
+double CalcPressForce(const PressedPart& part, double compression) {
   if (!(compression > 0)) {
     return 0;
   }
@@ -127,7 +127,7 @@ double CalcPressForce(const PressedPart& part, double compression) noexcept {
   return CalcUnlimited(part, most) + slope * (compression - most);
 }
 
-double CalcPressRate(const PressedPart& part) noexcept {
+double CalcPressRate(const PressedPart& part) {
   constexpr double kSmall = 1e-6;  // [m]: nothing is pressed by less. A choice.
   return CalcPressForce(part, kSmall) / kSmall;
 }

@@ -100,10 +100,10 @@ using PressedPart =
  Beyond what is known, the force rises by the slope there, or by that at the beginning where that
  is more. Sources: those of the stiffnesses; disc springs as CalcDiscShape(); gaskets: Gent,
  Engineering with Rubber, for large compression of blocks. */
-[[nodiscard]] double CalcPressForce(const PressedPart& part, double compression) noexcept;
+[[nodiscard]] double CalcPressForce(const PressedPart& part, double compression);
 
 /** Its rate: force over compression, of the first micrometre [N/m]. */
-[[nodiscard]] double CalcPressRate(const PressedPart& part) noexcept;
+[[nodiscard]] double CalcPressRate(const PressedPart& part);
 
 /** The compression up to which the force of a part is known [m]; infinite where it is linear. */
 [[nodiscard]] double FindMostPressed(const PressedPart& part) noexcept;

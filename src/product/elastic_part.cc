@@ -101,7 +101,7 @@ Vec3 FindAxis(const Part& part) {
   const spatial::Eigensystem system = spatial::CalcEigensystem(part.mass.I_BBcm_B);
   const Vec3 moments = system.values;  // Ascending.
   const bool is_lowest = moments[2] - moments[1] <= moments[1] - moments[0];
-  const Vec3 axis = system.vectors.col(is_lowest ? 0 : 2).normalized();
+  Vec3 axis = system.vectors.col(is_lowest ? 0 : 2).normalized();
   for (int k = 0; k < 3; ++k) {
     if (std::abs(axis[k]) > kNearAxis) {
       return Vec3::Unit(k);

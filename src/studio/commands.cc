@@ -51,6 +51,8 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::CancelCommand>(&Hub::DoCancel),
       Entry<protocol::TakeCommand>(&Hub::DoTake),
       Entry<protocol::ReleaseCommand>(&Hub::DoRelease),
+      Entry<protocol::HandOverCommand>(&Hub::DoHandOver),
+      Entry<protocol::AskPartCommand>(&Hub::DoAskPart),
       Entry<protocol::HandsCommand>(&Hub::DoHands),
       Entry<protocol::DevicesCommand>(&Hub::DoDevices),
       Entry<protocol::UseCommand>(&Hub::DoUse),
@@ -120,6 +122,28 @@ Result<Json> Hub::DoTake(const protocol::TakeCommand& command) {
 
 Result<Json> Hub::DoRelease(const protocol::ReleaseCommand& command) {
   return Done(workbench_->hands().Release(command.hand));
+}
+
+Result<Json> Hub::DoHandOver(const protocol::HandOverCommand& command) {
+  return Done(workbench_->hands().HandOver(command.hand, command.to));
+}
+
+Result<Json> Hub::DoAskPart(const Caller& caller, const protocol::AskPartCommand& command) {
+  const std::vector<std::size_t> own = HandsOf(caller.id);
+  const auto free =
+      std::find_if(own.begin(), own.end(), [&](std::size_t hand) { return hand != command.hand; });
+  if (free == own.end()) {
+    return Fail(ErrorCode::kInvalid, "no hand of this page could take the part", "",
+                "ask for control of a hand first");
+  }
+  const auto holder = clients_.find(leases_[command.hand]);
+  if (holder == clients_.end() || holder->first == caller.id) {
+    return Done(workbench_->hands().HandOver(command.hand, *free));  // Nobody has to agree.
+  }
+  const Json asks{
+      {"event", "part_asked"}, {"by", caller.id}, {"hand", command.hand}, {"to", *free}};
+  holder->second.link->SendText(asks.dump());
+  return Json::object();
 }
 
 Result<Json> Hub::DoForces(const Caller& caller, const protocol::ForcesCommand& command) {

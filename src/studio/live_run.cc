@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "session/make_simulation.h"
+#include "studio/next_step.h"
 
 namespace hvas::studio {
 namespace {
@@ -147,6 +148,35 @@ void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping
   tasks_.emplace_back([this, hand, input] { hands_[hand]->pointer().Move(input); });
 }
 
+void LiveRun::HandOver(std::size_t from, std::size_t to, product::OccurrenceId id) {
+  constexpr std::int64_t kPatienceNs = 500'000'000;  // To let go takes two physics steps: a choice.
+  const std::lock_guard lock(mutex_);
+  tasks_.emplace_back([this, from, to, id] {
+    const std::int64_t now_ns = MonotonicNs();
+    hands_[from]->pointer().Move({now_ns, spatial::Pose(), false});
+    passing_ = Passing{to, id, now_ns + kPatienceNs};
+  });
+}
+
+void LiveRun::Catch() {
+  if (!passing_) {
+    return;
+  }
+  const simulation::PartState& part = observed_.parts[passing_->id.index()];
+  const std::int64_t now_ns = MonotonicNs();
+  if (part.placement == Placement::kHeld && now_ns < passing_->give_up_ns) {
+    return;
+  }
+  if (part.placement == Placement::kLoose) {
+    const simulation::SequenceStep step =
+        FindStep(model(), observed_, passing_->id, simulation::TakeExtent::kWhole);
+    const Vec3 p_BoBcm_B = simulation::CombineMass(model(), step).p_BoBcm_B;
+    simulation_->physics().Prepare(step, passing_->to);
+    hands_[passing_->to]->pointer().Move({now_ns, spatial::Pose(part.X_WB * p_BoBcm_B), true});
+  }
+  passing_.reset();
+}
+
 LiveState LiveRun::state() const {
   const std::lock_guard lock(mutex_);
   return observed_;
@@ -210,6 +240,7 @@ void LiveRun::Advance() {
   }
   part_run().Advance();
   Observe();
+  Catch();
 }
 
 simulation::PartRun& LiveRun::part_run() {

@@ -69,6 +69,10 @@ class LiveRun final : private simulation::Sink {
   /** Sets the pointer's target pose of a hand. Any thread may call it. */
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
 
+  /** Lets a hand go of a part, and closes another one on it before it has fallen 5 mm. Nothing goes
+   on where the part stays in its place. Any thread may call it. @pre both follow pointers. */
+  void HandOver(std::size_t from, std::size_t to, product::OccurrenceId id);
+
   void StopForces(bool is_stopped) { simulation_->StopForces(is_stopped); }
 
   /** State at the last physics step; this and the next two may be called by any thread. */
@@ -92,8 +96,18 @@ class LiveRun final : private simulation::Sink {
               const haptics::TickOutput& out) noexcept override;
   void OnEvent(const simulation::SimulationEvent& event) override;
   void OnFlight(const std::vector<simulation::FlightTick>& ticks) override;
+
+  /** A part on its way from one hand into another. */
+  struct Passing {
+    std::size_t to;
+    product::OccurrenceId id;
+    std::int64_t give_up_ns;  ///< MonotonicNs() after which the part is nobody's.
+  };
+
   void Advance();
   void Observe();
+  /** Closes the second hand on a part as soon as the first one has let go. */
+  void Catch();
   [[nodiscard]] simulation::PartRun& part_run();
   /** The first step whose part is not in its place, or that of the assembly. */
   [[nodiscard]] std::size_t FindNextStep(const std::vector<simulation::PartState>& parts) const;
@@ -119,6 +133,8 @@ class LiveRun final : private simulation::Sink {
   LiveState observed_;
   LiveState before_take_;
   std::array<bool, 2> is_holding_{};  ///< Indexed by hand.
+
+  std::optional<Passing> passing_;  ///< For the physics thread alone.
 
   std::thread thread_;
 };

@@ -119,6 +119,27 @@ Result<void> WorkbenchHands::Release(std::size_t hand) {
   return {};
 }
 
+Result<void> WorkbenchHands::HandOver(std::size_t from, std::size_t to) {
+  const auto run = FindRun(from);
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  if (const auto other = FindRun(to); !other) {
+    return Unexpected(other.error());
+  }
+  if (from == to || (*run)->is_holding(to)) {
+    return Fail(ErrorCode::kInvalid, "the hand that is to take the part is not free",
+                fmt::format("hand {}", to), "release what it holds first");
+  }
+  const auto ticks = live_->frame().frame.ticks;
+  if (!(*run)->is_holding(from) || from >= ticks.size() || !ticks[from].occurrence.is_valid()) {
+    return Fail(ErrorCode::kInvalid, "the hand holds nothing", fmt::format("hand {}", from),
+                "take a part first");
+  }
+  (*run)->HandOver(from, to, ticks[from].occurrence);
+  return {};
+}
+
 Result<void> WorkbenchHands::SetCount(std::size_t count) {
   if (count != 1 && count != HandRack::kMaxHands) {
     return Fail(ErrorCode::kInvalid, "the number of hands has to be 1 or 2", "count", "");

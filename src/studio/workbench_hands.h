@@ -41,6 +41,9 @@ class WorkbenchHands final : public SceneObserver {
       simulation::TakeExtent extent = simulation::TakeExtent::kWhole);
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
   [[nodiscard]] Result<void> Release(std::size_t hand);
+  /** Passes what a hand holds into another one. Errors: kInvalid where the first one holds nothing,
+   the second one holds something, or either has a device, whose grip is its user's. */
+  [[nodiscard]] Result<void> HandOver(std::size_t from, std::size_t to);
 
   /** Sets the number of hands: 1 or 2. Reports by the event "hands". */
   [[nodiscard]] Result<void> SetCount(std::size_t count);

@@ -42,18 +42,22 @@ async function lookAtAxes(page) {
   return { right, up, away: cross(up, right), step: kStepPx / pixelsPerMetre };
 }
 
-/** Presses the keys that move the part in the hand by a vector of W [m]. */
-async function pressMove(page, axes, move) {
+/** Presses the keys that move the part in the hand by a vector of W [m], in the view as it is now.
+ @returns the metres of a key press. */
+async function pressMove(page, move) {
+  await waitForView(page);  // It goes by itself to the part whose turn it is.
+  const axes = await lookAtAxes(page);
   for (const [axis, more, less] of [["up", "ArrowUp", "ArrowDown"], ["right", "ArrowRight", "ArrowLeft"], ["away", "PageUp", "PageDown"]]) {
     const fine = Math.round(dot(move, axes[axis]) / (kFine * axes.step));
     const key = fine > 0 ? more : less;
     await pressTimes(page, key, Math.floor(Math.abs(fine) * kFine));
     await pressTimes(page, `Alt+${key}`, Math.abs(fine) % (1 / kFine));
   }
+  return axes.step;
 }
 
 /** Takes the part whose turn it is, lifts it, brings it before its place, and pushes it in until it sits. */
-async function insertByKeys(page, axes, step, goal) {
+async function insertByKeys(page, step, goal) {
   const kLift = 0.1;
   const kBefore = 0.05;
   const kOn = 0.01;
@@ -66,13 +70,14 @@ async function insertByKeys(page, axes, step, goal) {
   // It may go on turning slowly about its axis: that is not waited for.
   const whereabouts = async () => ({ p: (await poseOf(page, step.occurrence)).p });
   const rest = () => waitForStill(page, whereabouts, { frames: 3, sessionMs: 120, most: 3e-4, isOver }, kPatience);
-  const goTo = async (target, within) => {
+  const goTo = async (target, presses) => {
+    let within = 0;
     for (let count = 0; count < 6 && !(await isOver()); count++) {
       const missing = add(target, (await poseOf(page, step.occurrence)).p, -1);
       if (Math.hypot(...missing) < within) {
         return;
       }
-      await pressMove(page, axes, missing);
+      within = presses * (await pressMove(page, missing));
       await rest();
     }
   };
@@ -81,11 +86,11 @@ async function insertByKeys(page, axes, step, goal) {
   await rest();
   const before = add(goal, step.way_in, -Math.max(kBefore, step.distance_m + kOn));
   const height = Math.max(before[2], (await poseOf(page, step.occurrence)).p[2]) + kLift;
-  await goTo([...(await poseOf(page, step.occurrence)).p.slice(0, 2), height], 5 * axes.step);
-  await goTo([before[0], before[1], height], 5 * axes.step);
-  await goTo(before, kFine * axes.step);
+  await goTo([...(await poseOf(page, step.occurrence)).p.slice(0, 2), height], 5);
+  await goTo([before[0], before[1], height], 5);
+  await goTo(before, kFine);
   for (let count = 0; count < kTries && !(await isOver()); count++) {
-    await pressMove(page, axes, step.way_in.map((value) => kOn * value));
+    await pressMove(page, step.way_in.map((value) => kOn * value));
     await rest();
   }
   // What has been let go is told of by a frame, and that it is placed by an event a little later.
@@ -104,9 +109,7 @@ describe("the whole gear pump", () => {
     await takePicture(page, "keys_begin");
     for (const step of scene.steps.filter(({ kind }) => kind === "insert")) {
       await waitForState(page, ({ step: { index } }) => scene.steps[index] === step);
-      await waitForView(page);  // which goes to the part whose turn it is, and changes what a key press moves it by
-      const axes = await lookAtAxes(page);
-      await insertByKeys(page, axes, step, scene.occurrences[step.occurrence].goal.p);
+      await insertByKeys(page, step, scene.occurrences[step.occurrence].goal.p);
     }
     await takePicture(page, "keys_done");
     const { occurrences } = await fetchScene(page);

@@ -105,6 +105,31 @@ TEST_F(WorkbenchHandsTest, SecondHandDoesWhatTheFirstOneDoes) {  // N11: two han
   EXPECT_TRUE(AwaitTrue([this] { return bench_.live().frame().frame.ticks.size() == 1; }));
 }
 
+TEST_F(WorkbenchHandsTest, PartGoesFromOneHandIntoTheOtherBeforeItFalls) {
+  OpenPeg();
+  const std::size_t start = log_.size();
+  ASSERT_TRUE(bench_.hands().SetCount(2));
+  ASSERT_TRUE(AwaitDevice(1, HandRack::kPointer, start));
+  EXPECT_FALSE(bench_.hands().HandOver(0, 1));  // nothing is in it
+  TakePeg();
+  EXPECT_FALSE(bench_.hands().HandOver(0, 0));
+  EXPECT_FALSE(bench_.hands().HandOver(1, 0));
+  MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, 0.08))), 0.8);
+  const double height = bench_.live().frame().frame.X_WB[kPeg].p().z();
+  ASSERT_TRUE(bench_.hands().HandOver(0, 1));
+  ASSERT_TRUE(AwaitTrue([this] {
+    const auto ticks = bench_.live().frame().frame.ticks;
+    return ticks.size() == 2 && ticks[1].occurrence.is_valid() && !ticks[0].occurrence.is_valid();
+  }));
+  EXPECT_EQ(PlacementOf(kPeg), Placement::kHeld);
+  EXPECT_NEAR(bench_.live().frame().frame.X_WB[kPeg].p().z(), height, 5e-3);
+  hand_ = 1;
+  InsertPeg();
+  ASSERT_FALSE(HasFatalFailure());
+  ReleasePeg();
+  EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
+}
+
 TEST_F(WorkbenchHandsTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   OpenPeg();
   constexpr const char* kAddress = "emulated:openhaptics:touch_x";

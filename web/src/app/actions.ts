@@ -3,10 +3,11 @@
 import { clearPicks, isolate, select, setHidden, showAll, toggleGhost, type Tool } from "../model/view_state";
 import type { PathKind } from "../model/part_path";
 import type { ViewName } from "../view3d/camera_rig";
-import { canSteer, paths, store, studio, ui, view, viewport } from "./app_state";
+import { canSteer, leadsHand, paths, store, studio, ui, view, viewport } from "./app_state";
 import { chooseFile, saveRuns, saveScreenshot } from "./exports";
 import { t } from "./i18n";
 import type { MessageKey } from "./en";
+import type { CommandResults } from "../protocol/messages";
 import { action, toggle, type Action } from "./action";
 import { forcesOff, kStopKey, takeChosen } from "./hand_actions";
 import { fileTimeActions, simulateTimeActions, timeActions } from "./time_actions";
@@ -41,15 +42,27 @@ const mayAskForLease = () =>
   store.link.value === "open" && !store.hasLease.value && store.role.value === "operator" && store.study.value === null;
 
 async function askForLease(): Promise<void> {
-  const answer = await studio.command({ command: "lease", action: "request" });
+  noteAsked(await studio.command({ command: "lease", action: "request" }));
+}
+
+/** For a hand of one's own beside that of whoever steers. */
+async function askToJoin(): Promise<void> {
+  noteAsked(await studio.command({ command: "lease", action: "request", hand: 1 }));
+}
+
+function noteAsked(answer: CommandResults["lease"] | null): void {
   if (answer?.waits_for !== undefined) {
     studio.notify(t("notice.leaseAsked"));
   }
 }
 
-/** To whoever asked for it. */
-function giveLease(): void {
+/** To whoever asked for it; a second hand that is not there yet is made. */
+async function giveLease(): Promise<void> {
   const asked = store.leaseAsked.value;
+  const isSecond = asked?.hands.every((hand) => hand >= store.hands.value.length) === true;
+  if (isSecond && (await studio.command({ command: "hands", count: 2 })) === null) {
+    return;
+  }
   for (const hand of asked?.hands.filter((each) => store.ownHands.value.includes(each)) ?? []) {
     void studio.command({ command: "lease", action: "give", to: asked!.by, hand });
   }
@@ -175,10 +188,10 @@ const toolActions: Action[] = [
 ];
 
 const simulateActions: Action[] = [
-  action("take", "action.take", takeChosen, { startsGroup: true, keys: ["g"], isEnabled: () => steers() && !isHolding() }),
+  action("take", "action.take", takeChosen, { startsGroup: true, keys: ["g"], isEnabled: () => hasScene() && leadsHand() && !isHolding() }),
   action("release", "action.release", () => viewport.value?.hand.release(), {
     keys: ["r"],
-    isEnabled: () => isHolding() && canSteer() && !store.demo.value,
+    isEnabled: () => isHolding() && leadsHand() && !store.demo.value,
   }),
   action("align", "action.align", () => viewport.value?.hand.mouse.snapTurn(), { keys: ["o"], isEnabled: isHolding }),
   toggle("assist", "action.assist", view.assists),
@@ -203,7 +216,10 @@ const simulateActions: Action[] = [
   action("lease", "action.lease", () => void askForLease(), {
     isEnabled: mayAskForLease,
   }),
-  action("lease-give", "action.leaseGive", giveLease, { isEnabled: () => store.leaseAsked.value !== null }),
+  action("join", "action.join", () => void askToJoin(), {
+    isEnabled: () => mayAskForLease() && store.ownHands.value.every((hand) => hand >= store.hands.value.length),
+  }),
+  action("lease-give", "action.leaseGive", () => void giveLease(), { isEnabled: () => store.leaseAsked.value !== null }),
   action("lease-release", "action.leaseRelease", () => void studio.command({ command: "lease", action: "release" }), {
     isEnabled: () => store.hasLease.value && store.clients.value.length > 1,
   }),

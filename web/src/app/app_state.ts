@@ -80,3 +80,7 @@ export function followTraces(): void {
 }
 
 export const canSteer = () => store.canSteer.value;
+
+/** Whether the mouse and the keys of this page lead the hand that is chosen. */
+export const leadsHand = () =>
+  store.link.value === "open" && store.replay.value === null && store.ownHands.value.includes(view.hand.value);

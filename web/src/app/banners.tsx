@@ -4,6 +4,7 @@ import { useEffect } from "preact/hooks";
 import { findAction, runAction } from "./actions";
 import { canSteer, store, studio } from "./app_state";
 import { logText } from "./event_list";
+import { PartAsked } from "./hand_over";
 import { t } from "./i18n";
 import { Icon } from "./icons";
 import { backToLive } from "./time_source";
@@ -19,7 +20,6 @@ export function denialText(): string {
 export function Banners() {
   const safety = store.safety.value;
   const asked = store.leaseAsked.value;
-  const hasTwo = store.hands.value.length > 1;
   return (
     <div class="banners">
       {store.link.value === "lost" ? (
@@ -71,7 +71,7 @@ export function Banners() {
         <div class="banner is-info" role="alert" data-testid="lease-asked">
           <Icon name="hand" />
           <span>
-            {hasTwo && asked.hands.length === 1
+            {asked.hands.length === 1
               ? t("banner.handAsked", { client: asked.by, n: (asked.hands[0] ?? 0) + 1 })
               : t("banner.leaseAsked", { client: asked.by })}
           </span>
@@ -83,6 +83,7 @@ export function Banners() {
           </button>
         </div>
       ) : null}
+      <PartAsked />
       {store.demo.value ? (
         <div class="banner is-info" data-testid="demo-runs">
           <Icon name="play" />

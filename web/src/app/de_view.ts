@@ -155,4 +155,10 @@ export const deView: Record<keyof typeof enView, string> = {
   "log.filter.alarms": "Warnungen",
   "load.meshes": "Das Bild wird geholt",
   "load.contact shapes": "Kontaktformen werden vorbereitet",
+  "action.join": "Mit eigener Hand mitarbeiten",
+  "action.handOver": "Übergeben",
+  "action.handOverTo": "An Hand {n} übergeben",
+  "action.askPart": "Um {part} bitten",
+  "banner.partAsked": "{client} bittet um {part} in Ihrer Hand.",
+  "notice.partAsked": "Sie haben um {part} gebeten. Wer das Teil hält, kann es übergeben.",
 };

@@ -153,4 +153,10 @@ export const enView = {
   "log.filter.alarms": "Alarms",
   "load.meshes": "Fetching the picture",
   "load.contact shapes": "Preparing contact shapes",
+  "action.join": "Join with a hand of your own",
+  "action.handOver": "Hand over",
+  "action.handOverTo": "Hand over to hand {n}",
+  "action.askPart": "Ask for {part}",
+  "banner.partAsked": "{client} asks for {part}, which is in your hand.",
+  "notice.partAsked": "You have asked for {part}. Whoever holds it can hand it over.",
 } as const;

@@ -2,8 +2,9 @@
 
 import { useRef } from "preact/hooks";
 import { liveNumbers, makeHint } from "../model/hints";
-import { canSteer, store, studio, ui, view, viewport } from "./app_state";
+import { leadsHand, store, studio, ui, view, viewport } from "./app_state";
 import { findAction, isEnabled, runAction } from "./actions";
+import { HandOverButton } from "./hand_over";
 import { number, t } from "./i18n";
 import { Key } from "./key";
 import { holdingHand, setText, useLive } from "./live";
@@ -31,7 +32,7 @@ export function HintBar() {
   const hasTwo = store.hands.value.length > 1;
   const held = store.held.value.find((h) => h.hand === view.hand.value) ?? store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
-  const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: canSteer() });
+  const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: leadsHand() });
   const mayAsk = store.role.value === "operator" && studio.study.experimenter.value === null;
   const mayLetGo = held !== null && isEnabled(findAction("release"));
   return (
@@ -57,9 +58,15 @@ export function HintBar() {
           <Key of={findAction("release")} /> {t("action.release")}
         </button>
       ) : null}
+      <HandOverButton />
       {!store.hasLease.value && ui.overlay.value === null && mayAsk && store.link.value === "open" ? (
         <button type="button" class="hint-button" data-testid="hint-lease" onClick={() => runAction(findAction("lease"))}>
           {t("action.lease")}
+        </button>
+      ) : null}
+      {ui.overlay.value === null && isEnabled(findAction("join")) ? (
+        <button type="button" class="hint-button" data-testid="hint-join" onClick={() => runAction(findAction("join"))}>
+          {t("action.join")}
         </button>
       ) : null}
     </div>

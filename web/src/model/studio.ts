@@ -5,6 +5,7 @@ import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
 import type { Client, Command, CommandResults, Role, Scene, ServerError, ServerEvent } from "../protocol/messages";
+import { dropAnswered, noteAsking } from "./asking";
 import { CollisionCounter } from "./collisions";
 import { addToLog, countLimits, isAlarm, kAlarms, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { lastingTroubles, withTrouble } from "./hands";
@@ -233,7 +234,8 @@ export class Studio {
         this.noteOwnRole(event.clients);
         break;
       case "lease_asked":
-        store.leaseAsked.value = event;
+      case "part_asked":
+        noteAsking(store, event);
         break;
       case "history":
         store.history.value = { undo: event.undo, redo: event.redo };
@@ -282,11 +284,7 @@ export class Studio {
       this.store.role.value = own.role;
       this.store.hasLease.value = own.has_lease;
     }
-    const asked = this.store.leaseAsked.value;
-    const isAsked = clients.some((c) => c.id === asked?.by) && own?.hands?.some((hand) => asked?.hands.includes(hand)) === true;
-    if (!isAsked) {
-      this.store.leaseAsked.value = null;
-    }
+    dropAnswered(this.store, clients, own?.hands ?? []);
   }
 
   private applyAssembly(event: ServerEvent): void {

@@ -53,8 +53,10 @@ export class HandControl {
       }
     });
     this.life.follow(() => {
-      if (view.hand.value >= Math.max(1, studio.store.hands.value.length)) {
-        view.hand.value = 0;
+      const count = Math.max(1, studio.store.hands.value.length);
+      const own = studio.store.ownHands.value.filter((hand) => hand < count);
+      if (view.hand.value >= count || (own.length > 0 && !own.includes(view.hand.value))) {
+        view.hand.value = own[0] ?? 0;
       }
     });
   }
@@ -156,6 +158,12 @@ export class HandControl {
   release(hand = this.view.hand.peek()): void {
     this.forget(this.led[hand]!);
     void this.studio.command({ command: "release", hand });
+  }
+
+  /** What is held goes into another hand, which closes on it at once. */
+  passOn(hand: number, to: number): void {
+    this.forget(this.led[hand]!);
+    void this.studio.command({ command: "hand_over", hand, to });
   }
 
   /** All that is held. */
