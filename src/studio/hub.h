@@ -41,7 +41,7 @@ struct Example {
  the events and frames that they get. All functions are for one thread. */
 class Hub {
  public:
-  static constexpr std::size_t kMaxClients = 8;  ///< Pages that see one scene: a choice.
+  static constexpr std::size_t kMaxClients = 16;  ///< Pages that see one scene: a choice.
   static constexpr std::size_t kMaxUnseen = 2;   ///< Frame messages not yet acknowledged.
   /** Sustained rate for one client (token bucket). */
   static constexpr double kCommandsPerSecond = 50;

@@ -8,7 +8,7 @@ import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 import WebSocket from "ws";
 
-const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
+export const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
 const kPatienceMs = 120_000;  // for what happens at once where nothing is wrong
@@ -503,6 +503,21 @@ export async function takeOutByMouse(page, occurrence, goal, height = 0.12) {
 /** Takes hold of a part with the mouse and moves it over its place and in, as far as it goes; the button stays down. */
 export async function insertByMouse(page, occurrence, goal, height = 0.12) {
   await takeByMouse(page, occurrence);
+  await bringInByMouse(page, occurrence, goal, height);
+}
+
+/** Takes over with the mouse what is in a hand of this page already; the button stays down. */
+export async function takeOverByMouse(page, occurrence) {
+  await waitForView(page);
+  const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
+  assert.ok(at.isVisible, `part ${occurrence} is to be seen`);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 8, at.y - 8, { steps: 3 });
+}
+
+/** Moves the part under the mouse over its place and in, as far as it goes; the button stays down. */
+export async function bringInByMouse(page, occurrence, goal, height = 0.12) {
   await moveMouseTo(page, [goal[0], goal[1], goal[2] + height]);
   // A round part may go on turning slowly about its axis.
   await waitForStill(page, async () => ({ p: (await poseOf(page, occurrence)).p }));

@@ -17,6 +17,7 @@ import {
   signIn,
   stateOf,
   takeByMouse,
+  takeOverByMouse,
   takePicture,
   waitForAnswer,
   waitForCalm,
@@ -119,11 +120,9 @@ describe("two operators", () => {
     await waitForState(first, (state) => !state.hasLease);
     assert.equal(await first.getByTestId("lease-asked").count(), 0);
 
-    await waitForView(second);
     const before = await poseOf(second, kShaft);
+    await takeOverByMouse(second, kShaft);
     const at = await second.evaluate((id) => window.hvas.screen(id), kShaft);
-    await second.mouse.move(at.x, at.y);
-    await second.mouse.down();
     await second.mouse.move(at.x + 10, at.y - 60, { steps: 5 });
     assert.ok(distance(await waitForRest(second, kShaft), before) > 0.01, "the second one goes on with it");
     await waitForPlacement(second, kShaft, "held");
@@ -150,10 +149,8 @@ describe("two operators", () => {
     assert.ok(distance(await waitForRest(first, kShaft), before) < 0.005, "it has not fallen");
     assert.equal(await second.getByTestId("part-asked").count(), 0);
 
-    await waitForView(first);
+    await takeOverByMouse(first, kShaft);
     const at = await first.evaluate((id) => window.hvas.screen(id), kShaft);
-    await first.mouse.move(at.x, at.y);
-    await first.mouse.down();
     await first.mouse.move(at.x + 10, at.y - 60, { steps: 5 });
     assert.ok(distance(await waitForRest(first, kShaft), before) > 0.01, "the first one goes on with it");
     await first.mouse.up();

@@ -166,7 +166,7 @@ TEST_F(ServerTest, NinthClientIsTurnedAway) {
   const auto message = ninth->ReadMessage();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->opcode, Message::kClose);
-  EXPECT_NE(message->bytes.find("8 clients"), std::string::npos);
+  EXPECT_NE(message->bytes.find("16 clients"), std::string::npos);
   clients.pop_back();
   EXPECT_FALSE(Await(clients.front().get(), [](const Json& json) {
                  return json.value("event", "") == "roles" && json["clients"].size() == 7;
