@@ -1,6 +1,6 @@
 /** Surfaces of the workshop, drawn when they are needed: no picture is loaded. */
 
-import { CanvasTexture, RepeatWrapping, SRGBColorSpace } from "three";
+import { CanvasTexture, LinearMipmapNearestFilter, RepeatWrapping, SRGBColorSpace } from "three";
 
 /** A stream of numbers from 0 to 1, the same each time (mulberry32). */
 export function makeRandom(seed: number): () => number {
@@ -24,18 +24,8 @@ function makeTexture(size: number, across: number, seed: number, draw: Draw): Ca
   texture.colorSpace = SRGBColorSpace;
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.repeat.set(1 / across, 1 / across);
-  texture.anisotropy = 4;
+  texture.minFilter = LinearMipmapNearestFilter; // Half the work of blending two of its sizes, for each pixel.
   return texture;
-}
-
-function speckle(pen: CanvasRenderingContext2D, size: number, random: () => number, count: number, ink: string): void {
-  for (let k = 0; k < count; k++) {
-    pen.globalAlpha = 0.05 + 0.12 * random();
-    pen.fillStyle = ink;
-    const dot = 0.5 + 2 * random();
-    pen.fillRect(size * random(), size * random(), dot, dot);
-  }
-  pen.globalAlpha = 1;
 }
 
 /** Planks along x, each of its own tone, with grain. */
@@ -60,40 +50,6 @@ export function makeWood(): CanvasTexture {
       pen.fillStyle = "rgb(40 26 14 / 55%)";
       pen.fillRect(0, k * high, size, 1.4);
     }
-  });
-}
-
-export function makeConcrete(): CanvasTexture {
-  return makeTexture(512, 2, 23, (pen, size, random) => {
-    pen.fillStyle = "#8c9095";
-    pen.fillRect(0, 0, size, size);
-    for (let k = 0; k < 60; k++) {
-      const [x, y, radius] = [size * random(), size * random(), 20 + 70 * random()];
-      const shade = pen.createRadialGradient(x, y, 0, x, y, radius);
-      const tone = random() < 0.5 ? "60 64 70" : "170 172 176";
-      shade.addColorStop(0, `rgb(${tone} / 10%)`);
-      shade.addColorStop(1, `rgb(${tone} / 0%)`);
-      pen.fillStyle = shade;
-      pen.fillRect(x - radius, y - radius, 2 * radius, 2 * radius);
-    }
-    speckle(pen, size, random, 2600, "#3d4147");
-    pen.strokeStyle = "rgb(70 74 80 / 60%)";
-    pen.lineWidth = 2;
-    pen.strokeRect(0, 0, size, size);
-  });
-}
-
-/** Plaster above, a painted base below: `across` is the height of the wall. */
-export function makeWall(height: number): CanvasTexture {
-  return makeTexture(512, height, 37, (pen, size, random) => {
-    pen.fillStyle = "#c9cdd2";
-    pen.fillRect(0, 0, size, size);
-    speckle(pen, size, random, 1800, "#7c838c");
-    pen.fillStyle = "#5d7184";
-    pen.fillRect(0, 0.62 * size, size, 0.38 * size);
-    pen.fillStyle = "#44586a";
-    pen.fillRect(0, 0.615 * size, size, 0.008 * size);
-    pen.fillRect(0, 0.965 * size, size, 0.035 * size);
   });
 }
 

@@ -7,9 +7,8 @@ import {
   Group,
   Mesh,
   MeshBasicMaterial,
-  MeshStandardMaterial,
+  MeshLambertMaterial,
   PlaneGeometry,
-  PointLight,
   Raycaster,
   Vector3,
   type BufferGeometry,
@@ -17,9 +16,10 @@ import {
   type Ray,
   type Texture,
 } from "three";
+import { bakeLight } from "./baked_light";
 import { benchSize, keepOnBench, type BenchItem, type BenchKind, type BenchSize } from "../../model/bench";
 import { makeBenchItem } from "./bench_items";
-import { makeConcrete, makePegboard, makeWall, makeWood } from "./textures";
+import { makePegboard, makeWood } from "./textures";
 
 const kBenchHeight = 0.92;
 const kTop = 0.05;
@@ -43,24 +43,38 @@ function scaleUv(geometry: BoxGeometry, x: number, y: number, z: number): BoxGeo
   return geometry;
 }
 
+/** The bench's top is lit in so many pieces each way, so that the lamp's spot is round. */
+const kTopParts = 24;
+/** The walls from below: a skirting, paint, a line, plaster; heights over the floor [m]. */
+const kWallBands = [
+  { from: 0, to: 0.1, color: 0x44586a },
+  { from: 0.1, to: 1.1, color: 0x5d7184 },
+  { from: 1.1, to: 1.125, color: 0x44586a },
+  { from: 1.125, to: kRoomHeight, color: 0xc9cdd2 },
+];
+/** Light that walls throw back at each other. */
+const kWallLight = 0.35;
+
+/** Of the lamp over the bench, at a place on it [m]. */
+function lampLight(place: Vector3): number {
+  return 0.3 / (1 + 4 * ((place.x - 0.2) ** 2 + (place.y + 0.1) ** 2));
+}
+
 export class Workshop {
   readonly root = new Group();
   size: BenchSize = { x: 1, y: 0.6 };
   private readonly building = new Group();
   private readonly standing: Standing[] = [];
   private readonly shapes = new Map<BenchKind, BufferGeometry>();
-  private readonly itemMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.25 });
+  private readonly itemMaterial = new MeshLambertMaterial({ vertexColors: true });
   private readonly textures = {
     wood: makeWood(),
-    concrete: makeConcrete(),
-    wall: makeWall(kRoomHeight),
     board: makePegboard(),
   };
-  private readonly lamp = new PointLight(0xfff0d8, 1.6, 0, 1.6);
   private readonly caster = new Raycaster();
 
   constructor() {
-    this.root.add(this.building, this.lamp);
+    this.root.add(this.building);
   }
 
   /** Around a product in this sphere, with the bench's top where it lies. */
@@ -70,7 +84,6 @@ export class Workshop {
     this.clearBuilding();
     this.buildBench();
     this.buildRoom();
-    this.lamp.position.set(0.2, -0.1, 1.1);
   }
 
   /** What stands on the bench now. */
@@ -124,15 +137,15 @@ export class Workshop {
 
   private buildBench(): void {
     const { x, y } = this.size;
-    const wood = new MeshStandardMaterial({ map: this.textures.wood, roughness: 0.75 });
-    const steel = new MeshStandardMaterial({ color: 0x4b5560, roughness: 0.5, metalness: 0.4 });
-    const add = (w: number, d: number, h: number, at: Vector3, material: Material) => {
-      const mesh = new Mesh(scaleUv(new BoxGeometry(w, d, h), w, d, h), material);
+    const wood = new MeshBasicMaterial({ map: this.textures.wood, vertexColors: true });
+    const steel = new MeshBasicMaterial({ color: 0x4b5560, vertexColors: true });
+    const add = (w: number, d: number, h: number, at: Vector3, material: Material, parts = 1) => {
+      const geometry = scaleUv(new BoxGeometry(w, d, h, parts, parts), w, d, h);
+      const mesh = new Mesh(bakeLight(geometry, (place) => lampLight(place.add(at))), material);
       mesh.position.copy(at);
-      mesh.receiveShadow = true;
       this.building.add(mesh);
     };
-    add(2 * x, 2 * y, kTop, new Vector3(0, 0, -kTop / 2), wood);
+    add(2 * x, 2 * y, kTop, new Vector3(0, 0, -kTop / 2), wood, kTopParts);
     const leg = kBenchHeight - kTop;
     for (const [u, v] of [[-1, -1], [-1, 1], [1, -1], [1, 1]] as const) {
       add(0.07, 0.07, leg, new Vector3(u * (x - 0.08), v * (y - 0.08), -kTop - leg / 2), steel);
@@ -145,20 +158,22 @@ export class Workshop {
     const { x, y } = this.size;
     const [width, depth] = [2 * (x + kRoomMargin), 2 * (y + kRoomMargin)];
     const floorZ = -kBenchHeight;
-    const walls = new Mesh(
-      scaleUv(new BoxGeometry(width, depth, kRoomHeight), width, depth, kRoomHeight),
+    for (const { from, to, color } of kWallBands) {
+      const geometry = new BoxGeometry(width, depth, to - from);
+      keepOnlySides(geometry);
       // Seen from within only: from outside one looks in.
-      new MeshStandardMaterial({ map: this.textures.wall, roughness: 0.95, side: BackSide }),
-    );
-    walls.geometry.deleteAttribute("color");
-    walls.position.z = floorZ + kRoomHeight / 2;
-    keepOnlySides(walls.geometry);
-    const floor = this.plane(width, depth, this.textures.concrete);
+      const paint = new MeshBasicMaterial({ color, vertexColors: true, side: BackSide });
+      const band = new Mesh(bakeLight(geometry, () => kWallLight, -1), paint);
+      band.position.z = floorZ + (from + to) / 2;
+      this.building.add(band);
+    }
+    const concrete = new MeshBasicMaterial({ color: 0x8c9095, vertexColors: true });
+    const floor = new Mesh(bakeLight(new PlaneGeometry(width, depth, kTopParts, kTopParts), lampLight), concrete);
     floor.position.z = floorZ;
     const board = this.plane(1.9 * x, 0.7, this.textures.board);
     board.rotation.x = Math.PI / 2;
     board.position.set(0, depth / 2 - 0.02, floorZ + 1.75);
-    this.building.add(walls, floor, board, ...this.makeLights());
+    this.building.add(floor, board, ...this.makeLights());
   }
 
   private makeLights(): Mesh[] {
@@ -176,7 +191,7 @@ export class Workshop {
     for (let k = 0; k < uv.count; k++) {
       uv.setXY(k, uv.getX(k) * width, uv.getY(k) * depth);
     }
-    return new Mesh(geometry, new MeshStandardMaterial({ map: texture, roughness: 0.9 }));
+    return new Mesh(bakeLight(geometry), new MeshBasicMaterial({ map: texture, vertexColors: true }));
   }
 
   private clearBuilding(): void {
