@@ -42,7 +42,7 @@ struct Example {
 class Hub {
  public:
   static constexpr std::size_t kMaxClients = 16;  ///< Pages that see one scene: a choice.
-  static constexpr std::size_t kMaxUnseen = 2;   ///< Frame messages not yet acknowledged.
+  static constexpr std::size_t kMaxUnseen = 2;    ///< Frame messages not yet acknowledged.
   /** Sustained rate for one client (token bucket). */
   static constexpr double kCommandsPerSecond = 50;
   static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.

@@ -120,6 +120,8 @@ Json FitOf(const Model& model, const product::Mate& mate) {
             {"diameter_mm", units::ToMm(fit.nominal_diameter)},
             {"clearance_min_um", nullptr},
             {"clearance_max_um", nullptr},
+            {"hole_um", nullptr},
+            {"shaft_um", nullptr},
             {"clearance_actual_um", nullptr},
             {"clearance_along_um", nullptr},
             {"is_proposed", fit.is_proposed},
@@ -128,6 +130,8 @@ Json FitOf(const Model& model, const product::Mate& mate) {
     if (const auto limits = fits::CalcFitLimits(*code, fit.nominal_diameter)) {
       json["clearance_min_um"] = units::ToUm(limits->min_clearance);
       json["clearance_max_um"] = units::ToUm(limits->max_clearance);
+      json["hole_um"] = {units::ToUm(limits->hole.lower), units::ToUm(limits->hole.upper)};
+      json["shaft_um"] = {units::ToUm(limits->shaft.lower), units::ToUm(limits->shaft.upper)};
     }
   }
   if (const auto& force = model.mates[mate.id.index()].fit; force != nullptr) {

@@ -12,6 +12,8 @@ function fit(code: string, clearanceUm: number): Fit {
     diameter_mm: 10,
     clearance_min_um: clearanceUm - 5,
     clearance_max_um: clearanceUm + 5,
+    hole_um: [0, 10],
+    shaft_um: [-clearanceUm - 5, -clearanceUm + 5],
     clearance_actual_um: clearanceUm,
     clearance_along_um: [clearanceUm - 6, clearanceUm + 6],
     is_proposed: true,

@@ -17,11 +17,19 @@ function stateOf(mate: Mate): "open" | "done" | "active" {
   return isInPlace(mate.a) && isInPlace(mate.b) ? "done" : "open";
 }
 
-/** "Concentric", "Slot 12 mm". */
+/** "Concentric ⌀ 20 mm", "Slot 12 mm". */
 function kindText(mate: Mate): string {
-  const width = mate.kind === "prismatic" && mate.fit !== null ? ` ${number(mate.fit.diameter_mm)} mm` : "";
-  return t(`mates.${mate.kind}`) + width;
+  const size = mate.fit === null ? "" : ` ${mate.kind === "axis_hole" ? "⌀\u202f" : ""}${number(mate.fit.diameter_mm)}\u202fmm`;
+  return t(`mates.${mate.kind}`) + size;
 }
+
+/** The faces of a mate are lit while the pointer or the keys are at its name. */
+const lights = (mate: Mate) => ({
+  onMouseEnter: () => void (view.litMate.value = mate.id),
+  onFocus: () => void (view.litMate.value = mate.id),
+  onMouseLeave: () => void (view.litMate.value = null),
+  onBlur: () => void (view.litMate.value = null),
+});
 
 /** The parts whose mates are shown: the selection, else what is held or expected; none: all mates. */
 function partsInQuestion(): ReadonlySet<number> {
@@ -68,6 +76,7 @@ export function ConstraintList() {
                 class="constraint-name"
                 title={mate.evidence}
                 data-testid={`mate-${mate.id}`}
+                {...lights(mate)}
                 onClick={() => {
                   select(view, [mate.a, mate.b], false);
                   chooseCardMate(view, [mate.a, mate.b], mateKey(mate));

@@ -9,6 +9,7 @@ import type { Fit, Mate } from "../protocol/messages";
 import { canSteer, store, studio, view } from "./app_state";
 import { figures, number, t } from "./i18n";
 import { holdingHand, setText, useLive } from "./live";
+import { ToleranceZones } from "./tolerance_zones";
 
 const kCommonFits = ["H7/g6", "H7/h6", "H7/k6", "H7/n6", "H7/p6", "H7/s6", "H8/f7", "H11/c11"];
 
@@ -173,6 +174,7 @@ export function FitCard({ parts }: { parts: readonly number[] }) {
           {told !== null ? <dd>{told.along}</dd> : null}
           <FitForces parts={parts} />
         </dl>
+        {fit === null ? null : <ToleranceZones fit={fit} isRound={mate.kind !== "prismatic"} />}
         {canSteer() && canHaveFit(mate) ? <FitChoice mate={mate} key={mateKey(mate)} /> : null}
       </div>
     </section>

@@ -24,6 +24,8 @@ export function makeViewState() {
     selected: signal<readonly number[]>([]),
     selectedFace: signal<FaceOf | null>(null),
     /** The mate whose card is shown, by its key, for what is selected (ids in their order, with commas). */
+    /** A mate of the list that the pointer or the keys are at: its faces are lit. */
+    litMate: signal<number | null>(null),
     cardMates: signal<ReadonlyMap<string, string>>(new Map()),
     hovered: signal<number | null>(null),
     hidden: signal<ReadonlySet<number>>(new Set()),

@@ -19,6 +19,7 @@ import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
 import { loadedAs, opensWhole, type Loaded } from "./loaded_as";
 import { MarkLayer } from "./mark_layer";
+import { markedFaces } from "./marked_faces";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
 import { Parts, type PickHit } from "./parts";
@@ -292,10 +293,8 @@ export class SceneView {
   }
 
   private markFaces(): void {
-    const selected = this.view.selectedFace.value;
-    const faces = [...this.view.picked.value, ...(selected === null ? [] : [selected])];
     this.marks.showFaces(
-      faces.flatMap(({ occurrence, face }) => {
+      markedFaces(this.view, this.scene?.mates ?? []).flatMap(({ occurrence, face }) => {
         const shape = this.parts?.shapeOf(occurrence);
         const matrix = this.parts?.matrixOf(occurrence);
         return shape && matrix ? [{ shape, matrix, face }] : [];

@@ -1,0 +1,17 @@
+/** Which faces are marked in the view. */
+
+import type { ViewState } from "../model/view_state";
+import type { FaceOf, Mate } from "../protocol/messages";
+
+/** Those that were picked, the one that is selected, and both sides of the mate that is looked at. */
+export function markedFaces(view: ViewState, mates: readonly Mate[]): FaceOf[] {
+  const selected = view.selectedFace.value;
+  const lit = view.litMate.value;
+  const mate = mates.find(({ id }) => id === lit);
+  return [
+    ...view.picked.value,
+    ...(selected === null ? [] : [selected]),
+    ...(mate?.faces_a ?? []).map((face) => ({ occurrence: mate!.a, face })),
+    ...(mate?.faces_b ?? []).map((face) => ({ occurrence: mate!.b, face })),
+  ];
+}
