@@ -193,7 +193,8 @@ std::int16_t BlockBuilder::ToUnits(double phi) const {
 
 void BlockBuilder::BuildOctant(const Index3& low, NearSet* octant) {
   const Vec3 centre = CentreOf(low) + Vec3::Constant(h_);
-  DropFarFaces(centre, 2 * h_, &octant->list);
+  const double distance = FindDistance(octant->list, centre, 0);
+  DropFarFaces(centre, 2 * h_, distance, &octant->list);
   if (TryExact(octant->list, centre, 2 * h_, low, 2)) {
     return;
   }
@@ -209,8 +210,7 @@ void BlockBuilder::BuildOctant(const Index3& low, NearSet* octant) {
 void BlockBuilder::BuildZone(const Index3& zone, const BegunFilter& begun) {
   const Vec3 centre = CentreOf(zone);
   const double radius = 2 * kHalfDiagonal * h_;
-  // Zones follow each other: what was closest to one is near the next.
-  const Nearest nearest = search_.FindSignedInBoxed(begun.list, centre, hint_);
+  const Nearest nearest = search_.FindSignedInBoxed(begun, centre);
   hint_ = nearest.triangle;
   const double distance = std::abs(nearest.distance);
   if (distance > kBandVoxels * h_ * kSlack + radius) {
@@ -220,7 +220,7 @@ void BlockBuilder::BuildZone(const Index3& zone, const BegunFilter& begun) {
   NearList* list = &zone_.list;
   if (distance <= exact_depth_ + radius) {
     search_.End(centre, radius, begun, &zone_);
-    DropFarFaces(centre, h_, list);
+    DropFarFaces(centre, h_, distance, list);
     if (TryExact(*list, centre, h_, zone, 1)) {
       return;
     }
@@ -228,7 +228,7 @@ void BlockBuilder::BuildZone(const Index3& zone, const BegunFilter& begun) {
   } else {
     ZoneOf(zone)->code = zone::kFar | data_.mesh.face[hint_];
   }
-  FillNodes(zone, centre, begun.list);
+  FillNodes(zone, begun.list);
 }
 
 // Where one analytic face alone can be closest in a cube of zones, its surface gives all distances:
@@ -281,29 +281,60 @@ bool BlockBuilder::AgreesWithFace(const NearList& list, const Vec3& centre, doub
   return true;
 }
 
+// The distance of the closest triangle of a list.
+double BlockBuilder::FindDistance(const NearList& list, const Vec3& p, double offset) {
+  const Nearest nearest = search_.Find(list, p, offset, hint_);
+  hint_ = nearest.triangle;
+  return nearest.distance;
+}
+
 // Takes out the faces that nowhere in the cube are the closest, nor nearly so. A ball around the
 // whole cube says little; in each of its octants a face's unbounded surface tells how near the face
-// can be.
-void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list) {
+// can be. How far the mesh is from an octant's centre is looked for only where the bounds that
+// follow from its `distance` from the cube's centre do not decide.
+void BlockBuilder::DropFarFaces(const Vec3& centre, double half, double distance, NearList* list) {
   const FewFaces<kMostFaces> few(data_.mesh, *list);
   if (few.count < 2) {
     return;
   }
   const double radius = kHalfDiagonal * half;
+  const double offset = radius * kSlack;  // Of the octants' centres.
+  const auto limit_of = [&](double from_mesh) {
+    return (from_mesh + 2 * radius) * kSlack + face_margin_;
+  };
+  const Bounds limit{limit_of(std::max(0.0, distance - offset)), limit_of(distance + offset)};
   std::array<bool, kMostFaces> is_near{};
-  for (int o = 0; o < 8 && std::count(is_near.begin(), is_near.end(), true) <
-                               static_cast<std::ptrdiff_t>(few.count);
-       ++o) {
-    const Vec3 c = centre + 0.5 * half * Corner(o);
-    const Nearest nearest = search_.Find(*list, c, (c - centre).norm(), hint_);
-    hint_ = nearest.triangle;
-    const double limit = (nearest.distance + 2 * radius) * kSlack + face_margin_;
+  std::array<std::array<double, kMostFaces>, 8> away{};  // The faces' least distances.
+  std::size_t near = 0;
+  for (std::size_t o = 0; o < 8 && near < few.count; ++o) {
+    const Vec3 c = centre + 0.5 * half * Corner(static_cast<int>(o));
     for (std::size_t f = 0; f < few.count; ++f) {
+      if (is_near[f]) {
+        continue;
+      }
       const std::uint32_t face = few.faces[f];
       const auto exact = spatial::CalcDistance(data_.exact.faces[face], c);
-      is_near[f] = is_near[f] || !exact.is_valid ||
-                   std::abs(exact.distance) - data_.exact.deviation[face] <= limit;
+      away[o][f] = std::abs(exact.distance) - data_.exact.deviation[face];
+      is_near[f] = !exact.is_valid || away[o][f] <= limit.low;
+      near += is_near[f] ? 1 : 0;
     }
+  }
+  for (std::size_t o = 0; o < 8 && near < few.count; ++o) {
+    const Vec3 c = centre + 0.5 * half * Corner(static_cast<int>(o));
+    double exact_limit = -1;
+    for (std::size_t f = 0; f < few.count; ++f) {
+      if (is_near[f] || away[o][f] > limit.high) {
+        continue;
+      }
+      if (exact_limit < 0) {
+        exact_limit = limit_of(FindDistance(*list, c, offset));
+      }
+      is_near[f] = away[o][f] <= exact_limit;
+      near += is_near[f] ? 1 : 0;
+    }
+  }
+  if (near == few.count) {
+    return;
   }
   const auto is_far = [&](const NearTriangle& entry) {
     return !is_near[few.IndexOf(data_.mesh.face[entry.triangle])];
@@ -313,12 +344,11 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, NearList* list)
 
 // Takes out the triangles that a look from the zone's centre tells not to be the closest of their
 // face to any point of it, and gives the others their distances from there and their points_.
-void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
-  const FewFaces<kMostFaces> few(data_.mesh, *list);
+void BlockBuilder::DropHidden(const Vec3& centre, std::size_t faces, NearList* list) {
   const double radius = 2 * kHalfDiagonal * h_;
   points_.clear();
-  std::array<double, kMostFaces> least{};
-  least.fill(std::numeric_limits<double>::infinity());
+  std::array<double, kMostFaces> limit{};
+  limit.fill(std::numeric_limits<double>::infinity());
   NearSearch::EightTriangles eight(search_, centre);
   for (std::size_t i = 0; i < list->size(); i += NearSearch::EightTriangles::kMost) {
     eight.Clear();
@@ -327,20 +357,23 @@ void BlockBuilder::DropHidden(const Vec3& centre, NearList* list) {
     }
     eight.Calc();
     for (int k = 0; k < eight.count(); ++k) {
-      NearTriangle& entry = (*list)[i + static_cast<std::size_t>(k)];
+      const std::size_t at = i + static_cast<std::size_t>(k);
       points_.push_back(eight.PointOf(k));
-      entry.distance = std::sqrt(eight.squared(k));
-      double& face_least = least[few.IndexOf(data_.mesh.face[entry.triangle])];
-      face_least = std::min(face_least, entry.distance);
+      (*list)[at].distance = std::sqrt(eight.squared(k));
+      double& face_least = limit[face_numbers_[at]];
+      face_least = std::min(face_least, (*list)[at].distance);
     }
+  }
+  for (std::size_t f = 0; f < faces; ++f) {
+    limit[f] = (limit[f] + 2 * radius) * kSlack;
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const NearTriangle entry = (*list)[i];
-    const double limit =
-        (least[few.IndexOf(data_.mesh.face[entry.triangle])] + 2 * radius) * kSlack;
-    if (search_.CalcLeastLimit(entry.triangle, points_[i], centre, radius, limit) <= limit) {
+    const double most = limit[face_numbers_[i]];
+    if (search_.CalcLeastLimit(entry.triangle, points_[i], centre, radius, most) <= most) {
       points_[kept] = points_[i];
+      face_numbers_[kept] = face_numbers_[i];
       (*list)[kept++] = entry;
     }
   }
@@ -361,13 +394,17 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
     std::sort(list->begin(), list->end(), IsNearer());
     return;
   }
-  DropHidden(centre, list);
+  face_numbers_.clear();
+  for (const NearTriangle& entry : *list) {
+    face_numbers_.push_back(few.IndexOf(mesh.face[entry.triangle]));
+  }
+  DropHidden(centre, few.count, list);
   candidates_.clear();
   std::array<double, kMostFaces> first{};  // The least distance of each face from the centre.
   first.fill(std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < list->size(); ++i) {
     const NearTriangle& entry = (*list)[i];
-    const std::size_t face = few.IndexOf(mesh.face[entry.triangle]);
+    const std::size_t face = face_numbers_[i];
     const Vec3 way = points_[i].q - centre;
     const unsigned side =
         (way.x() > 0 ? 1U : 0U) | (way.y() > 0 ? 2U : 0U) | (way.z() > 0 ? 4U : 0U);
@@ -385,14 +422,33 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
   for (auto& of_cube : least) {
     of_cube.fill(-1);
   }
+  // What may be the closest is so most often in the cube on its own side.
+  NearSearch::EightTriangles eight(search_);
+  for (std::size_t i = 0; i < candidates_.size(); i += NearSearch::EightTriangles::kMost) {
+    eight.Clear();
+    for (std::size_t k = i; k < std::min(i + eight.kMost, candidates_.size()); ++k) {
+      eight.Add(candidates_[k].entry.triangle, cubes[candidates_[k].side]);
+    }
+    eight.Calc();
+    for (int k = 0; k < eight.count(); ++k) {
+      points_[i + static_cast<std::size_t>(k)] = eight.PointOf(k);
+    }
+  }
   list->clear();
-  for (const Candidate& candidate : candidates_) {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& candidate = candidates_[i];
     const double from_centre = first[candidate.face];
     const Bounds bounds{std::max(0.0, from_centre - offset), from_centre + offset};
-    // What may be the closest is so most often in the cube on its own side.
     for (const unsigned turn : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
       const std::size_t o = candidate.side ^ turn;
-      if (MayBeClosest(candidate, cubes[o], radius, bounds, &least[o][candidate.face])) {
+      double* const face_least = &least[o][candidate.face];
+      const double most = (*face_least < 0 ? bounds.high : *face_least) + 2 * radius;
+      if (turn != 0 && !search_.MayReach(candidate.entry.triangle, cubes[o], most * kSlack)) {
+        continue;
+      }
+      const TrianglePoint point =
+          turn == 0 ? points_[i] : search_.ClosestOn(candidate.entry.triangle, cubes[o]);
+      if (MayBeClosest(candidate, point, cubes[o], radius, bounds, face_least)) {
         list->push_back(candidate.entry);
         break;
       }
@@ -401,18 +457,15 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
   std::sort(list->begin(), list->end(), IsNearer());
 }
 
-// Whether a candidate may be the closest of its face to some point of a ball. How far the face is
-// from the ball's centre is looked for only where its bounds do not decide.
-bool BlockBuilder::MayBeClosest(const Candidate& candidate, const Vec3& c, double radius,
-                                const Bounds& bounds, double* least) const {
-  const std::uint32_t triangle = candidate.entry.triangle;
+// Whether a candidate, with its point closest to a ball's centre, may be the closest of its face to
+// some point of the ball. How far the face is from the centre is looked for only where its bounds
+// do not decide.
+bool BlockBuilder::MayBeClosest(const Candidate& candidate, const TrianglePoint& point,
+                                const Vec3& c, double radius, const Bounds& bounds,
+                                double* least) const {
   const auto limit_of = [radius](double distance) { return (distance + 2 * radius) * kSlack; };
   const double most = limit_of(*least < 0 ? bounds.high : *least);
-  if (!search_.MayReach(triangle, c, most)) {
-    return false;
-  }
-  const TrianglePoint point = search_.ClosestOn(triangle, c);
-  const double needed = search_.CalcLeastLimit(triangle, point, c, radius, most);
+  const double needed = search_.CalcLeastLimit(candidate.entry.triangle, point, c, radius, most);
   if (needed > most) {
     return false;
   }
@@ -470,9 +523,7 @@ void BlockBuilder::FillFarZone(const Index3& zone, double distance) {
 }
 
 // Nodes on a zone's upper sides are filled by the next zone in the block.
-void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre, const BoxedList& list) {
-  // What is listed has the closest triangle to each point of the zone.
-  const bool is_listed = (ZoneOf(zone)->code & ~zone::kPayload) == zone::kList;
+void BlockBuilder::FillNodes(const Index3& zone, const BoxedList& list) {
   NodeGrid grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     grid.count[axis] = zone[axis] == 3 ? 3 : 2;
@@ -481,20 +532,18 @@ void BlockBuilder::FillNodes(const Index3& zone, const Vec3& centre, const Boxed
                          h_ * static_cast<double>(2 * zone[axis] + static_cast<int>(i));
     }
   }
-  if (!is_listed) {
-    search_.FilterNodes(list, hint_, grid, &nodes_);
+  // What is listed has the closest triangle to each point of the zone.
+  if ((ZoneOf(zone)->code & ~zone::kPayload) == zone::kList) {
+    search_.FindSignedAtNodes(kept_, hint_, grid, &room_, &nodes_);
+  } else {
+    search_.FindSignedAtNodes(list, hint_, grid, &room_, &nodes_);
   }
   std::size_t node = 0;
   for (std::size_t k = 0; k < grid.count[2]; ++k) {
     for (std::size_t j = 0; j < grid.count[1]; ++j) {
       for (std::size_t i = 0; i < grid.count[0]; ++i, ++node) {
-        const Vec3 p = grid.NodeAt(i, j, k);
-        const Nearest nearest =
-            is_listed ? search_.FindSignedInSorted(kept_, p, (p - centre).norm(), hint_)
-                      : search_.FindSignedInBoxed(nodes_[node], p, hint_);
-        hint_ = nearest.triangle;
         SetNode(2 * zone[0] + static_cast<int>(i), 2 * zone[1] + static_cast<int>(j),
-                2 * zone[2] + static_cast<int>(k), nearest.distance);
+                2 * zone[2] + static_cast<int>(k), nodes_[node].distance);
       }
     }
   }

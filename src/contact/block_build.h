@@ -69,13 +69,15 @@ class BlockBuilder {
   bool TryExact(const NearList& list, const Vec3& centre, double half, const Index3& low,
                 int zones);
   bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
-  void DropFarFaces(const Vec3& centre, double half, NearList* list);
-  void DropHidden(const Vec3& centre, NearList* list);
+  void DropFarFaces(const Vec3& centre, double half, double distance, NearList* list);
+  [[nodiscard]] double FindDistance(const NearList& list, const Vec3& p, double offset);
+  void DropHidden(const Vec3& centre, std::size_t faces, NearList* list);
   void KeepClosest(const Vec3& centre, NearList* list);
-  [[nodiscard]] bool MayBeClosest(const Candidate& candidate, const Vec3& c, double radius,
-                                  const Bounds& bounds, double* least) const;
+  [[nodiscard]] bool MayBeClosest(const Candidate& candidate, const TrianglePoint& point,
+                                  const Vec3& c, double radius, const Bounds& bounds,
+                                  double* least) const;
   void FillFarZone(const Index3& zone, double distance);
-  void FillNodes(const Index3& zone, const Vec3& centre, const BoxedList& list);
+  void FillNodes(const Index3& zone, const BoxedList& list);
   void SetNode(int i, int j, int k, double phi);
   [[nodiscard]] std::int16_t ToUnits(double phi) const;
   [[nodiscard]] std::uint32_t FindOnlyFace() const;
@@ -96,9 +98,11 @@ class BlockBuilder {
   std::array<NearSet, 8> octants_;    // Of the block.
   std::array<BegunFilter, 8> begun_;  // Of the block's octants, then of the octant's zones.
   NearSet zone_;                      // What is near the zone at hand.
-  std::array<BoxedList, NodeGrid::kMost> nodes_;  // What may be closest to each node of it.
-  NearList kept_;                                 // What is listed of the zone at hand.
-  std::vector<TrianglePoint> points_;
+  NearList kept_;                     // What is listed of it.
+  NodeRoom room_;
+  std::array<Nearest, NodeGrid::kMost> nodes_;  // What is closest to each node of it.
+  std::vector<std::size_t> face_numbers_;       // Of kept_, among its faces.
+  std::vector<TrianglePoint> points_;           // Closest to the zone's centre, of kept_.
   std::vector<Candidate> candidates_;
   std::uint32_t hint_{kNoFace};
 };

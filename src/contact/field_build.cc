@@ -380,28 +380,19 @@ class CoarseFiller {
   void Fill(const Region& region) {
     const int side = std::max(1, region.width / 2);
     const int last = region.width / side - 1;
-    const auto low_of = [&](int i) {
-      return Index3{region.low[0] + side * std::min(i & 1, last),
-                    region.low[1] + side * std::min((i >> 1) & 1, last),
-                    region.low[2] + side * std::min(i >> 2, last)};
-    };
-    search_.BeginOctants(region.near, grid_.CentreOf(low_of(0), side),
-                         grid_.CentreOf(low_of(7), side), kHalfDiagonal * grid_.side * side, 0xff,
-                         &begun_);
+    hint_ = region.near.least.triangle;
     for (int i = 0; i < 8; ++i) {
-      const Index3 low = low_of(i);
-      if (grid_.Has(low)) {
-        hint_ = search_
-                    .FindLeast(grid_.CentreOf(low, side), kHalfDiagonal * grid_.side * side,
-                               begun_[static_cast<std::size_t>(i)])
-                    .triangle;
-        FillOctant(low, side, begun_[static_cast<std::size_t>(i)].list);
+      const Index3 octant{i & 1, (i >> 1) & 1, i >> 2};
+      const Index3 low{region.low[0] + side * octant[0], region.low[1] + side * octant[1],
+                       region.low[2] + side * octant[2]};
+      if (*std::max_element(octant.begin(), octant.end()) <= last && grid_.Has(low)) {
+        FillOctant(low, side, region.near.list);
       }
     }
   }
 
  private:
-  void FillOctant(const Index3& low, int side, const BoxedList& list) {
+  void FillOctant(const Index3& low, int side, const NearList& list) {
     NodeGrid nodes;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       nodes.count[axis] = static_cast<std::size_t>(std::min(side, grid_.count[axis] - low[axis]));
@@ -411,17 +402,15 @@ class CoarseFiller {
         nodes.at[axis][static_cast<std::size_t>(i)] = grid_.CentreOf(at, 1)[static_cast<int>(axis)];
       }
     }
-    search_.FilterNodes(list, hint_, nodes, &lists_);
+    search_.FindSignedAtNodes(list, hint_, nodes, &room_, &nearest_);
+    hint_ = nearest_[0].triangle;  // Octants follow each other.
     std::size_t node = 0;
     for (std::size_t k = 0; k < nodes.count[2]; ++k) {
       for (std::size_t j = 0; j < nodes.count[1]; ++j) {
         for (std::size_t i = 0; i < nodes.count[0]; ++i, ++node) {
-          const Nearest nearest =
-              search_.FindSignedInBoxed(lists_[node], nodes.NodeAt(i, j, k), hint_);
-          hint_ = nearest.triangle;
           const Index3 at{low[0] + static_cast<int>(i), low[1] + static_cast<int>(j),
                           low[2] + static_cast<int>(k)};
-          coarse_[grid_.IndexOf(at)] = static_cast<float>(nearest.distance);
+          coarse_[grid_.IndexOf(at)] = static_cast<float>(nearest_[node].distance);
         }
       }
     }
@@ -430,8 +419,8 @@ class CoarseFiller {
   const NearSearch& search_;
   const Grid& grid_;
   std::vector<float>& coarse_;
-  std::array<BegunFilter, 8> begun_;
-  std::array<BoxedList, NodeGrid::kMost> lists_;
+  NodeRoom room_;
+  std::array<Nearest, NodeGrid::kMost> nearest_;
   std::uint32_t hint_{kNoFace};
 };
 

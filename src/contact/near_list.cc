@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -37,7 +38,7 @@ NearSearch::NearSearch(const Mesh& mesh) : mesh_(mesh) {
     const Vec3 half = 0.5 * box.size();
     corners_.push_back(
         MakeTriangleCorners(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
-    boxes_.push_back({{c.x(), c.y(), c.z()}, {half.x(), half.y(), half.z()}, half.norm()});
+    boxes_.push_back({{c.x(), c.y(), c.z(), 0}, {half.x(), half.y(), half.z(), half.norm()}});
   }
   FindRimBends();
   FindSurroundings();
@@ -121,20 +122,23 @@ void NearSearch::FindSurroundings() {
 // what the rim turns there.
 double NearSearch::CalcLeastLimitOfRim(std::uint32_t triangle, std::size_t k, const Vec3& c,
                                        double radius, double most) const {
-  const std::uint32_t start = mesh_.triangles[triangle][k];
-  const std::uint32_t end = mesh_.triangles[triangle][(k + 1) % 3];
-  const Vec3 from_start = c - mesh_.vertices[start];
-  const Vec3 edge = mesh_.vertices[end] - mesh_.vertices[start];
-  const double length = edge.norm();
-  const double along = from_start.dot(edge) / length;
-  const double beyond = std::max({0.0, -along, along - length});
-  const double distance = (from_start - std::clamp(along, 0.0, length) / length * edge).norm();
-  if (distance > most) {
+  const TriangleCorners& corners = corners_[triangle];
+  const std::array<const double*, 3> corner{corners.a, corners.b, corners.c};
+  const Eigen::Map<const Vec3> start(corner[k]);
+  const Vec3 from_start = c - start;
+  const Vec3 edge = Eigen::Map<const Vec3>(corner[(k + 1) % 3]) - start;
+  const double along = from_start.dot(edge) / edge.squaredNorm();  // In edges.
+  const double squared = (from_start - std::clamp(along, 0.0, 1.0) * edge).squaredNorm();
+  if (squared > most * most) {
     return kAnywhere;
   }
-  const double bend = rim_bend_[along < 0 ? start : end];
-  return beyond <= (radius + bend * (distance + radius)) * kSlack + kRounding ? distance
-                                                                              : kAnywhere;
+  const double distance = std::sqrt(squared);
+  if (along >= 0 && along <= 1) {
+    return distance;
+  }
+  const double bend = rim_bend_[mesh_.triangles[triangle][along < 0 ? k : (k + 1) % 3]];
+  const double allowed = (radius + bend * (distance + radius)) * kSlack + kRounding;
+  return std::max(-along, along - 1) * edge.norm() <= allowed ? distance : kAnywhere;
 }
 
 // A point's closest one on a face is the foot of the normal in a triangle, or on an edge or corner
@@ -144,17 +148,19 @@ double NearSearch::CalcLeastLimit(std::uint32_t triangle, const TrianglePoint& p
                                   double radius, double most) const {
   constexpr double kCornerBend = 2;  // At a corner the way may lean more than at an edge.
   const Vec3 way = c - point.q;
-  const double distance = way.norm();
-  if (distance > most) {
+  const double squared = way.squaredNorm();
+  if (squared > most * most) {
     return kAnywhere;
   }
+  const double distance = std::sqrt(squared);
   const Surroundings& around = surroundings_[triangle];
   if (point.feature == TriangleFeature::kInside || around.bend == kAnywhere) {
     return distance;
   }
   const double height = std::abs(way.dot(mesh_.NormalOf(triangle)));
-  const double beside = std::sqrt(std::max(0.0, distance * distance - height * height));
-  if (beside <= (radius + kCornerBend * around.bend * (height + radius)) * kSlack + kRounding) {
+  const double beside =
+      (radius + kCornerBend * around.bend * (height + radius)) * kSlack + kRounding;
+  if (squared - height * height <= beside * beside) {
     return distance;
   }
   double limit = kAnywhere;
@@ -188,7 +194,7 @@ void NearSearch::Filter(const NearList& list, const Vec3& c, double radius, Near
   for (const NearTriangle& candidate : list) {
     const TriangleBox& box = boxes_[candidate.triangle];
     const double squared = box.CalcSquaredDistance(c);
-    begun.list[count] = {candidate.triangle, static_cast<float>(box.radius), squared};
+    begun.list[count] = {candidate.triangle, static_cast<float>(box.radius()), squared};
     begun.lowest = std::min(begun.lowest, squared);
     count += squared <= limit * limit ? 1 : 0;
   }
@@ -237,7 +243,7 @@ void NearSearch::BeginOctants(const NearSet& set, const Vec3& low, const Vec3& h
   for (const NearTriangle& entry : set.list) {
     const std::uint32_t triangle = entry.triangle;
     const TriangleBox& box = boxes_[triangle];
-    const auto box_radius = static_cast<float>(box.radius);
+    const auto box_radius = static_cast<float>(box.radius());
     const Pair xx = box.CalcSquaredAlong(0, x);
     const Pair yy = box.CalcSquaredAlong(1, y);
     const Pair zz = box.CalcSquaredAlong(2, z);
@@ -265,11 +271,9 @@ void NearSearch::BeginOctants(const NearSet& set, const Vec3& low, const Vec3& h
 void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, NearSet* out) const {
   const double small = 0.5 * radius * (1 - 1e-6);  // Single precision tells no more.
   double least = begun.least;
-  const auto lowest =
-      std::find_if(begun.list.begin(), begun.list.end(),
-                   [&](const BoxedTriangle& entry) { return entry.squared == begun.lowest; });
-  if (lowest->triangle != begun.first) {
-    least = std::min(least, CalcDistance(lowest->triangle, c));
+  const std::uint32_t lowest = begun.FindLowest();
+  if (lowest != begun.first) {
+    least = std::min(least, CalcDistance(lowest, c));
   }
   double limit = CalcLimit(least, radius);
   NearList& list = out->list;
@@ -292,7 +296,8 @@ void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, Nea
       continue;
     }
     list[kept] = {entry.triangle, entry.squared};
-    if (static_cast<double>(entry.radius) > small && boxes_[entry.triangle].radius > 0.5 * radius) {
+    if (static_cast<double>(entry.radius) > small &&
+        boxes_[entry.triangle].radius() > 0.5 * radius) {
       place[static_cast<std::size_t>(eight.count())] = kept;
       if (eight.Add(entry.triangle)) {
         calc();
@@ -306,34 +311,15 @@ void NearSearch::End(const Vec3& c, double radius, const BegunFilter& begun, Nea
   out->least = {kNoFace, kAnywhere};
   kept = 0;
   for (NearTriangle entry : list) {
-    entry.distance = entry.distance > 0 ? std::sqrt(entry.distance) : -entry.distance;
+    const double root = Pair(std::abs(entry.distance)).Root().low();
+    entry.distance = entry.distance > 0 ? root : -entry.distance;
     list[kept] = entry;
-    if (entry.distance <= limit) {
-      out->least = entry.distance < out->least.distance ? entry : out->least;
-      ++kept;
+    kept += entry.distance <= limit ? 1 : 0;
+    if (entry.distance < out->least.distance) {
+      out->least = entry;  // Not beyond the limit, as that is no less than the least.
     }
   }
   list.resize(kept);
-}
-
-NearTriangle NearSearch::FindLeast(const Vec3& c, double radius, const BegunFilter& begun) const {
-  const double small = 0.5 * radius * (1 - 1e-6);  // Single precision tells no more.
-  const double limit = CalcLimit(begun.least, radius);
-  NearTriangle least{kNoFace, kAnywhere};
-  double most = limit * limit;
-  for (const BoxedTriangle& entry : begun.list) {
-    if (entry.squared > most) {
-      continue;
-    }
-    const bool is_large =
-        static_cast<double>(entry.radius) > small && boxes_[entry.triangle].radius > 0.5 * radius;
-    const double distance = is_large ? CalcDistance(entry.triangle, c) : std::sqrt(entry.squared);
-    if (distance < least.distance) {
-      least = {entry.triangle, distance};
-      most = std::min(most, distance * distance * kSlack);
-    }
-  }
-  return least;
 }
 
 NearSearch::TriangleBox NearSearch::BoxAround(const NodeGrid& grid) {
@@ -343,83 +329,13 @@ NearSearch::TriangleBox NearSearch::BoxAround(const NodeGrid& grid) {
     const double high = grid.at[axis][grid.count[axis] - 1];
     box.centre[axis] = 0.5 * (low + high);
     box.half[axis] = 0.5 * (high - low) + kRounding;
+    box.half[3] += box.half[axis];
   }
   return box;
 }
 
-// As for octants, but each node has a list of its own at once: what is no further away than
-// `first`.
-void NearSearch::FilterNodes(const BoxedList& list, std::uint32_t first, const NodeGrid& grid,
-                             std::array<BoxedList, NodeGrid::kMost>* out) const {
-  std::array<double, NodeGrid::kMost + 1> limit_squared{};
-  std::array<BoxedTriangle*, NodeGrid::kMost + 1> end{};
-  std::size_t n = 0;
-  EightTriangles eight(*this);
-  const auto limit_nodes = [&] {
-    eight.Calc();
-    for (int i = 0; i < eight.count(); ++i, ++n) {
-      const double limit = CalcLimit(std::sqrt(eight.squared(i)), 0);
-      limit_squared[n] = limit * limit;
-      (*out)[n].resize(list.size() + 1);  // One more than may be kept is written.
-      end[n] = (*out)[n].data();
-    }
-    eight.Clear();
-  };
-  for (std::size_t k = 0; k < grid.count[2]; ++k) {
-    for (std::size_t j = 0; j < grid.count[1]; ++j) {
-      for (std::size_t i = 0; i < grid.count[0]; ++i) {
-        if (eight.Add(first, grid.NodeAt(i, j, k))) {
-          limit_nodes();
-        }
-      }
-    }
-  }
-  limit_nodes();
-  // Most boxes are further from the box around the nodes than any node may be from its closest.
-  const double most = *std::max_element(limit_squared.data(), limit_squared.data() + n) * kSlack;
-  const TriangleBox around = BoxAround(grid);
-  const Pair x(grid.at[0][0], grid.at[0][1]);
-  const Pair y(grid.at[1][0], grid.at[1][1]);
-  const Pair z(grid.at[2][0], grid.at[2][1]);
-  for (const BoxedTriangle& entry : list) {
-    const TriangleBox& box = boxes_[entry.triangle];
-    if (box.CalcSquaredDistance(around) > most) {
-      continue;
-    }
-    const Pair xx = box.CalcSquaredAlong(0, x);
-    const Pair yy = box.CalcSquaredAlong(1, y);
-    const Pair zz = box.CalcSquaredAlong(2, z);
-    const auto third = [&](std::size_t axis) {
-      return grid.count[axis] > 2 ? box.CalcSquaredAlong(axis, Pair(grid.at[axis][2])).low() : 0;
-    };
-    const double xx_third = third(0);
-    const std::array all_yy{yy.low(), yy.high(), third(1)};
-    const std::array all_zz{zz.low(), zz.high(), third(2)};
-    const auto put = [&](std::size_t node, double squared) {
-      *end[node] = {entry.triangle, entry.radius, squared};
-      end[node] += squared <= limit_squared[node] ? 1 : 0;
-    };
-    std::size_t node = 0;
-    for (std::size_t k = 0; k < grid.count[2]; ++k) {
-      for (std::size_t j = 0; j < grid.count[1]; ++j) {
-        const Pair squared = xx + Pair(all_yy[j]) + Pair(all_zz[k]);
-        put(node, squared.low());
-        if (grid.count[0] > 1) {
-          put(node + 1, squared.high());
-        }
-        if (grid.count[0] > 2) {
-          put(node + 2, xx_third + all_yy[j] + all_zz[k]);
-        }
-        node += grid.count[0];
-      }
-    }
-  }
-  for (std::size_t node = 0; node < n; ++node) {
-    (*out)[node].resize(static_cast<std::size_t>(end[node] - (*out)[node].data()));
-  }
-}
-
-// Looks at triangles, eight at once, for the closest one to p: the first of several as close.
+// Looks at triangles, eight at once, for the closest one to p: of several as close, the one with
+// the least number, in whatever order they are looked at.
 class NearSearch::Search {
  public:
   Search(const NearSearch& of, const Vec3& p, std::uint32_t hint) : eight_(of, p) {
@@ -437,7 +353,7 @@ class NearSearch::Search {
   const Nearest& Finish() {
     eight_.Calc();
     for (int i = 0; i < eight_.count(); ++i) {
-      if (eight_.squared(i) < squared_) {
+      if (IsCloser(eight_.squared(i), eight_.triangle(i))) {
         Take(eight_.squared(i), eight_.triangle(i), eight_.PointOf(i));
       }
     }
@@ -451,6 +367,10 @@ class NearSearch::Search {
   [[nodiscard]] double limit_squared() const { return limit_squared_; }
 
  private:
+  [[nodiscard]] bool IsCloser(double squared, std::uint32_t triangle) const {
+    return squared < squared_ || (squared == squared_ && triangle < nearest_.triangle);
+  }
+
   void Take(double squared, std::uint32_t triangle, const TrianglePoint& point) {
     squared_ = squared;
     nearest_ = {std::sqrt(squared), triangle, point};
@@ -465,18 +385,11 @@ class NearSearch::Search {
   Nearest nearest_;
 };
 
-template <bool is_sorted>
-Nearest NearSearch::FindIn(const NearList& list, const Vec3& p, double offset,
-                           std::uint32_t hint) const {
+Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
+                         std::uint32_t hint) const {
   Search search(*this, p, hint);
   for (const NearTriangle& entry : list) {
-    if (entry.distance - offset > search.limit()) {
-      if constexpr (is_sorted) {
-        break;
-      }
-      continue;
-    }
-    if (entry.triangle != hint &&
+    if (entry.distance - offset <= search.limit() && entry.triangle != hint &&
         boxes_[entry.triangle].CalcSquaredDistance(p) <= search.limit_squared()) {
       search.Look(entry.triangle);
     }
@@ -484,35 +397,193 @@ Nearest NearSearch::FindIn(const NearList& list, const Vec3& p, double offset,
   return search.Finish();
 }
 
-Nearest NearSearch::FindSignedInBoxed(const BoxedList& list, const Vec3& p,
-                                      std::uint32_t hint) const {
-  Search search(*this, p, hint);
-  for (const BoxedTriangle& entry : list) {
-    if (entry.squared <= search.limit_squared() && entry.triangle != hint) {
+Nearest NearSearch::FindSigned(const NearList& list, const Vec3& p, double offset,
+                               std::uint32_t hint) const {
+  return GiveSign(p, Find(list, p, offset, hint));
+}
+
+Nearest NearSearch::FindSignedInBoxed(const BegunFilter& begun, const Vec3& p) const {
+  const std::uint32_t lowest = begun.FindLowest();
+  Search search(*this, p, lowest);
+  for (const BoxedTriangle& entry : begun.list) {
+    if (entry.squared <= search.limit_squared() && entry.triangle != lowest) {
       search.Look(entry.triangle);
     }
   }
   return GiveSign(p, search.Finish());
 }
 
-Nearest NearSearch::Find(const NearList& list, const Vec3& p, double offset,
-                         std::uint32_t hint) const {
-  return FindIn<false>(list, p, offset, hint);
+// Looks at pairs of a node and a triangle, eight at once, for the closest triangle to each node: of
+// several as close, the one with the least number.
+class NearSearch::NodeSearch {
+ public:
+  NodeSearch(const NearSearch& of, const NodeGrid& grid, std::array<Nearest, NodeGrid::kMost>* out)
+      : eight_(of), out_(*out) {
+    for (std::size_t k = 0; k < grid.count[2]; ++k) {
+      for (std::size_t j = 0; j < grid.count[1]; ++j) {
+        for (std::size_t i = 0; i < grid.count[0]; ++i) {
+          points_[count_] = grid.NodeAt(i, j, k);
+          out_[count_] = {};
+          squared_[count_++] = kAnywhere;
+        }
+      }
+    }
+  }
+
+  void Look(std::size_t node, std::uint32_t triangle) {
+    nodes_[static_cast<std::size_t>(eight_.count())] = node;
+    if (eight_.Add(triangle, points_[node])) {
+      Finish();
+    }
+  }
+
+  void LookEverywhere(std::uint32_t triangle) {
+    for (std::size_t node = 0; node < count_; ++node) {
+      Look(node, triangle);
+    }
+    Finish();
+  }
+
+  // Looks at what is left.
+  void Finish() {
+    eight_.Calc();
+    for (int i = 0; i < eight_.count(); ++i) {
+      const std::size_t node = nodes_[static_cast<std::size_t>(i)];
+      const double squared = eight_.squared(i);
+      Nearest& nearest = out_[node];
+      if (squared < squared_[node] ||
+          (squared == squared_[node] && eight_.triangle(i) < nearest.triangle)) {
+        squared_[node] = squared;
+        nearest.triangle = eight_.triangle(i);
+        nearest.point = eight_.PointOf(i);
+      }
+    }
+    eight_.Clear();
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  [[nodiscard]] const Vec3& point(std::size_t node) const { return points_[node]; }
+
+  // The square of the least distance found.
+  [[nodiscard]] double squared(std::size_t node) const { return squared_[node]; }
+
+  // The largest of the least distances.
+  [[nodiscard]] double FindMost() const {
+    return std::sqrt(*std::max_element(squared_.data(), squared_.data() + count_));
+  }
+
+ private:
+  EightTriangles eight_;
+  std::array<std::size_t, EightTriangles::kMost> nodes_{};  // Of those that are looked at.
+  std::array<Vec3, NodeGrid::kMost> points_;
+  std::array<double, NodeGrid::kMost> squared_;
+  std::size_t count_{0};
+  std::array<Nearest, NodeGrid::kMost>& out_;
+};
+
+// The distance from a triangle is convex: from the middle of the grid, with its gradient there, it
+// has a lower bound at each node. Few triangles have one that is less than the distance of what is
+// closest to the middle.
+template <typename List>
+void NearSearch::FindSignedAtNodes(const List& list, std::uint32_t first, const NodeGrid& grid,
+                                   NodeRoom* room,
+                                   std::array<Nearest, NodeGrid::kMost>* out) const {
+  constexpr double kSingle = 1e-6;  // Bounds are sums of four numbers, each rounded to 6e-8.
+  NodeSearch search(*this, grid, out);
+  search.LookEverywhere(first);
+  const double reach = CalcLimit(search.FindMost(), 0);
+  const TriangleBox around = BoxAround(grid);
+  room->triangles.resize(list.size() + 1);  // One more than may be kept is written.
+  std::size_t count = 0;
+  for (const auto& entry : list) {
+    const double squared = boxes_[entry.triangle].CalcSquaredDistance(around);
+    room->triangles[count] = entry.triangle;
+    count += squared <= reach * reach && entry.triangle != first ? 1 : 0;
+  }
+  room->triangles.resize(count);
+  const std::uint32_t closest =
+      FindSlopes({around.centre[0], around.centre[1], around.centre[2]}, room);
+  if (closest != kNoFace) {
+    search.LookEverywhere(closest);
+  }
+  const double rounding = kSingle * (reach + around.radius());
+  for (std::size_t node = 0; node < search.count(); ++node) {
+    const Vec3& p = search.point(node);
+    const auto along = [&](std::size_t axis) {
+      return Quad(static_cast<float>(p[static_cast<int>(axis)] - around.centre[axis]));
+    };
+    const Quad x = along(0);
+    const Quad y = along(1);
+    const Quad z = along(2);
+    const Quad limit(static_cast<float>(CalcLimit(std::sqrt(search.squared(node)), 0) + rounding));
+    for (std::size_t n = 0; n < count; n += 4) {
+      const NodeRoom::Slopes& slopes = room->slopes[n / EightTriangles::kMost];
+      const std::size_t i = n % EightTriangles::kMost;
+      const Quad bound = Quad(&slopes.distance[i]) + Quad(&slopes.gradient[0][i]) * x +
+                         (Quad(&slopes.gradient[1][i]) * y + Quad(&slopes.gradient[2][i]) * z);
+      for (unsigned bits = BitsAtMost(bound, limit); bits != 0; bits &= bits - 1) {
+        search.Look(node, room->triangles[n + static_cast<std::size_t>(std::countr_zero(bits))]);
+      }
+    }
+  }
+  search.Finish();
+  for (std::size_t node = 0; node < search.count(); ++node) {
+    Nearest& nearest = (*out)[node];
+    nearest.distance = std::sqrt(search.squared(node));
+    nearest = GiveSign(search.point(node), nearest);
+  }
 }
 
-Nearest NearSearch::FindSigned(const NearList& list, const Vec3& p, double offset,
-                               std::uint32_t hint) const {
-  return GiveSign(p, FindIn<false>(list, p, offset, hint));
+std::uint32_t NearSearch::FindSlopes(const Vec3& middle, NodeRoom* room) const {
+  constexpr float kLeast = 1e-12F;  // [m]; nearer than this a gradient is noise.
+  constexpr std::size_t kEight = EightTriangles::kMost;  // What the kernel takes at once.
+  const std::size_t count = room->triangles.size();
+  room->slopes.resize((count + kEight - 1) / kEight);
+  double least = kAnywhere;
+  std::uint32_t closest = kNoFace;
+  EightTriangles eight(*this, middle);
+  for (std::size_t begin = 0; begin < count; begin += kEight) {
+    eight.Clear();
+    for (std::size_t n = begin; n < std::min(begin + kEight, count); ++n) {
+      eight.Add(room->triangles[n]);
+    }
+    eight.Calc();
+    for (int i = 0; i < eight.count(); ++i) {
+      if (eight.squared(i) < least) {
+        least = eight.squared(i);
+        closest = eight.triangle(i);
+      }
+    }
+    NodeRoom::Slopes& slopes = room->slopes[begin / kEight];
+    for (int i = 0; i < static_cast<int>(kEight); ++i) {
+      // Those that are not wanted are nowhere near.
+      slopes.distance[i] = static_cast<float>(i < eight.count() ? eight.squared(i) : kAnywhere);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < static_cast<int>(kEight); ++i) {
+        slopes.gradient[axis][i] = static_cast<float>(middle[axis] - eight.closest().q.at[axis][i]);
+      }
+    }
+    for (std::size_t i = 0; i < kEight; i += 4) {
+      const Quad distance = Quad(&slopes.distance[i]).Root();
+      distance.Store(&slopes.distance[i]);
+      for (float* const way : slopes.gradient_rows(i)) {
+        (Quad(way) / Most(distance, Quad(kLeast))).Store(way);
+      }
+    }
+  }
+  return closest;
 }
 
-Nearest NearSearch::FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
-                                       std::uint32_t hint) const {
-  return GiveSign(p, FindIn<true>(list, p, offset, hint));
-}
+template void NearSearch::FindSignedAtNodes(const BoxedList&, std::uint32_t, const NodeGrid&,
+                                            NodeRoom*, std::array<Nearest, NodeGrid::kMost>*) const;
+template void NearSearch::FindSignedAtNodes(const NearList&, std::uint32_t, const NodeGrid&,
+                                            NodeRoom*, std::array<Nearest, NodeGrid::kMost>*) const;
 
 std::optional<bool> NearSearch::FindSide(const NearList& list, const Vec3& p, double offset,
                                          std::uint32_t hint) const {
-  const double distance = FindIn<false>(list, p, offset, hint).distance;
+  const double distance = Find(list, p, offset, hint).distance;
   const double limit = distance * kSlack + kRounding;
   std::optional<bool> is_inside;
   for (const NearTriangle& entry : list) {

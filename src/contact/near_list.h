@@ -14,6 +14,7 @@
 
 #include "contact/mesh.h"
 #include "contact/pair.h"
+#include "contact/quad.h"
 
 namespace hvas::contact {
 
@@ -78,6 +79,13 @@ struct BegunFilter {
   double lowest{0};              ///< The least squared distance of them.
   std::uint32_t first{kNoFace};  ///< A triangle of it.
   double least{0};               ///< Its distance from the ball's centre.
+
+  /** The first triangle of the least distance. @pre the list is not empty. */
+  [[nodiscard]] std::uint32_t FindLowest() const {
+    return std::find_if(list.begin(), list.end(),
+                        [this](const BoxedTriangle& entry) { return entry.squared == lowest; })
+        ->triangle;
+  }
 };
 
 /** The nodes of two by two by two cells at most: their coordinates along each axis. */
@@ -96,6 +104,22 @@ struct Nearest {
   double distance{0};  ///< Signed where so said.
   std::uint32_t triangle{kNoFace};
   TrianglePoint point;
+};
+
+/** Triangles near the nodes of a grid, and how far they are from its middle. */
+struct NodeRoom {
+  /** Eight triangles' distances [m] and their gradients. */
+  struct Slopes {
+    float distance[8];
+    float gradient[3][8];
+
+    [[nodiscard]] std::array<float*, 3> gradient_rows(std::size_t i) {
+      return {&gradient[0][i], &gradient[1][i], &gradient[2][i]};
+    }
+  };
+
+  UnsetVector<std::uint32_t> triangles;
+  UnsetVector<Slopes> slopes;
 };
 
 /** Looks for the closest triangles of a mesh, which outlives it, in lists that are cut down from
@@ -126,14 +150,12 @@ class NearSearch {
   void BeginOctants(const NearSet& set, const Vec3& low, const Vec3& high, double radius,
                     unsigned wanted, std::array<BegunFilter, 8>* out) const;
 
-  /** Finds what may be closest to each node of a small grid, x first.
-   @param first  A triangle that is near.  @param out  Longer ones are as good. */
-  void FilterNodes(const BoxedList& list, std::uint32_t first, const NodeGrid& grid,
-                   std::array<BoxedList, NodeGrid::kMost>* out) const;
-
-  /** The entry of the least distance that End would leave. */
-  [[nodiscard]] NearTriangle FindLeast(const Vec3& c, double radius,
-                                       const BegunFilter& begun) const;
+  /** Finds the distance with its sign at each node of a small grid, x first.
+   @param list  A BoxedList or a NearList, whose distances are not looked at.
+   @param first  A triangle that is near.  @param room  For what is in between. */
+  template <typename List>
+  void FindSignedAtNodes(const List& list, std::uint32_t first, const NodeGrid& grid,
+                         NodeRoom* room, std::array<Nearest, NodeGrid::kMost>* out) const;
 
   /** Ends a filter that was begun: what it leaves is what Filter would. */
   void End(const Vec3& c, double radius, const BegunFilter& begun, NearSet* out) const;
@@ -187,6 +209,8 @@ class NearSearch {
     /** The square of the distance. */
     [[nodiscard]] double squared(int i) const { return closest_.squared[i]; }
 
+    [[nodiscard]] const EightClosest& closest() const { return closest_; }
+
     [[nodiscard]] TrianglePoint PointOf(int i) const {
       return {{closest_.q.at[0][i], closest_.q.at[1][i], closest_.q.at[2][i]},
               static_cast<TriangleFeature>(closest_.features[i])};
@@ -229,19 +253,12 @@ class NearSearch {
                                              std::uint32_t hint) const;
 
   /** Finds the distance with its sign at the point that the list has distances from. */
-  [[nodiscard]] Nearest FindSignedInBoxed(const BoxedList& list, const Vec3& p,
-                                          std::uint32_t hint) const;
-
-  /** Finds it in a list that is sorted by IsNearer. */
-  [[nodiscard]] Nearest FindSignedInSorted(const NearList& list, const Vec3& p, double offset,
-                                           std::uint32_t hint) const;
+  [[nodiscard]] Nearest FindSignedInBoxed(const BegunFilter& begun, const Vec3& p) const;
 
  private:
   class Search;
+  class NodeSearch;
 
-  template <bool is_sorted>
-  [[nodiscard]] Nearest FindIn(const NearList& list, const Vec3& p, double offset,
-                               std::uint32_t hint) const;
   [[nodiscard]] Nearest GiveSign(const Vec3& p, Nearest nearest) const;
 
   [[nodiscard]] double CalcDistance(std::uint32_t triangle, const Vec3& p) const {
@@ -249,28 +266,30 @@ class NearSearch {
   }
 
   // A box around a triangle: tells most that are too far away at a tenth of the exact distance's
-  // cost. In a line of the cache of its own.
+  // cost. In a line of the cache of its own; without branches, which would be guessed wrongly.
   struct alignas(64) TriangleBox {
-    double centre[3];
-    double half[3];
-    double radius;  // Of a sphere around it.
+    double centre[4];  // And zero.
+    double half[4];    // And the radius of a sphere around it.
+
+    [[nodiscard]] double radius() const { return half[3]; }
 
     [[nodiscard, gnu::always_inline]] double CalcSquaredDistance(const Vec3& p) const {
-      const double x = std::max(std::abs(p.x() - centre[0]) - half[0], 0.0);
-      const double y = std::max(std::abs(p.y() - centre[1]) - half[1], 0.0);
-      const double z = std::max(std::abs(p.z() - centre[2]) - half[2], 0.0);
-      return x * x + y * y + z * z;
+      return SumOfSquares((Pair(p.x(), p.y()) - Pair(centre)).Abs() - Pair(half),
+                          (Pair(p.z(), 0) - Pair(centre + 2)).Abs() - Pair(half + 2));
     }
 
     // Of another box.
     [[nodiscard, gnu::always_inline]] double CalcSquaredDistance(const TriangleBox& other) const {
-      double sum = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double beyond = std::max(
-            std::abs(other.centre[axis] - centre[axis]) - half[axis] - other.half[axis], 0.0);
-        sum += beyond * beyond;
-      }
-      return sum;
+      return SumOfSquares((Pair(other.centre) - Pair(centre)).Abs() - Pair(half) - Pair(other.half),
+                          (Pair(other.centre + 2) - Pair(centre + 2)).Abs() - Pair(half + 2) -
+                              Pair(other.half + 2));
+    }
+
+    // Of what is beyond along x and y, and along z; a radius stands below zero beside it.
+    [[nodiscard, gnu::always_inline]] static double SumOfSquares(Pair xy, Pair z) {
+      const Pair xxyy = xy.Positive() * xy.Positive();
+      const double beyond = z.Positive().low();
+      return xxyy.low() + xxyy.high() + beyond * beyond;
     }
 
     // What one axis adds to that, at two places.
@@ -280,7 +299,10 @@ class NearSearch {
     }
   };
 
-  // A little larger than the nodes' own. Its radius is not set.
+  // Finds how far the room's triangles are from a point; the closest one, kNoFace where none is.
+  std::uint32_t FindSlopes(const Vec3& middle, NodeRoom* room) const;
+
+  // A little larger than the nodes' own. Its radius is no less than that of a sphere around it.
   [[nodiscard]] static TriangleBox BoxAround(const NodeGrid& grid);
 
   // How a triangle goes on in its face.

@@ -18,6 +18,8 @@ class Pair {
 
   explicit Pair(double both) : v_(_mm_set1_pd(both)) {}
 
+  explicit Pair(const double* from) : v_(_mm_loadu_pd(from)) {}
+
   friend Pair operator+(Pair a, Pair b) { return Pair(_mm_add_pd(a.v_, b.v_)); }
 
   friend Pair operator-(Pair a, Pair b) { return Pair(_mm_sub_pd(a.v_, b.v_)); }
@@ -48,6 +50,8 @@ class Pair {
   Pair(double low, double high) : low_(low), high_(high) {}
 
   explicit Pair(double both) : low_(both), high_(both) {}
+
+  explicit Pair(const double* from) : low_(from[0]), high_(from[1]) {}
 
   friend Pair operator+(Pair a, Pair b) { return {a.low_ + b.low_, a.high_ + b.high_}; }
 

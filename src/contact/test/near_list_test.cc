@@ -140,7 +140,11 @@ TEST(NearSearch, FiltersOctantsAtOnceAsItDoesOneByOne) {
           ExpectEqual(octants[k].list[n], alone[n]);
         }
         ExpectEqual(octants[k].least, LeastOf(alone));
-        ExpectEqual(search.FindLeast(CentreOf(low, high, k), radius, begun[k]), LeastOf(alone));
+        const Vec3 c = CentreOf(low, high, k);
+        const Nearest simple = search.FindSigned(whole.list, c, NearSearch::kAnywhere, 0);
+        const Nearest boxed = search.FindSignedInBoxed(begun[k], c);
+        EXPECT_EQ(boxed.triangle, simple.triangle);
+        EXPECT_EQ(boxed.distance, simple.distance);
       }
     }
   }
@@ -153,7 +157,9 @@ TEST(NearSearch, FindsAtEachNodeOfAGridWhatAllTrianglesSay) {
     const NearSearch search(mesh);
     const NearList all = search.MakeFullList();
     std::array<BegunFilter, 8> begun;
-    std::array<BoxedList, NodeGrid::kMost> lists;
+    NodeRoom room;
+    std::array<Nearest, NodeGrid::kMost> at_nodes;
+    std::array<Nearest, NodeGrid::kMost> in_all;
     for (std::size_t draw = 0; draw < 27; ++draw) {
       const Vec3 centre = DrawPoint(&random, 12e-3);
       const double cell = random.Uniform(0.1e-3, 1e-3);
@@ -165,18 +171,21 @@ TEST(NearSearch, FindsAtEachNodeOfAGridWhatAllTrianglesSay) {
         }
       }
       search.BeginOctants({all, all.front()}, centre, centre, 2 * kHalfDiagonal * cell, 1, &begun);
-      std::uint32_t hint = all.front().triangle;
-      search.FilterNodes(begun[0].list, hint, grid, &lists);
+      const auto some =
+          static_cast<std::uint32_t>(random.Uniform(0, static_cast<double>(all.size())));
+      search.FindSignedAtNodes(begun[0].list, some, grid, &room, &at_nodes);
+      search.FindSignedAtNodes(all, all.front().triangle, grid, &room, &in_all);
       std::size_t node = 0;
       for (std::size_t k = 0; k < grid.count[2]; ++k) {
         for (std::size_t j = 0; j < grid.count[1]; ++j) {
           for (std::size_t i = 0; i < grid.count[0]; ++i, ++node) {
             const Vec3 p = grid.NodeAt(i, j, k);
-            const Nearest found = search.FindSignedInBoxed(lists[node], p, hint);
-            const Nearest simple = search.FindSigned(all, p, NearSearch::kAnywhere, hint);
-            hint = found.triangle;
+            const Nearest& found = at_nodes[node];
+            const Nearest simple = search.FindSigned(all, p, NearSearch::kAnywhere, some);
             EXPECT_EQ(found.distance, simple.distance);
             EXPECT_EQ(found.triangle, simple.triangle);
+            EXPECT_EQ(in_all[node].distance, simple.distance);
+            EXPECT_EQ(in_all[node].triangle, simple.triangle);
             EXPECT_EQ(std::abs(found.distance), CalcLeastDistance(mesh, p));
           }
         }
