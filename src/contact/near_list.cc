@@ -138,7 +138,10 @@ double NearSearch::CalcLeastLimitOfRim(std::uint32_t triangle, std::size_t k, co
   }
   const double bend = rim_bend_[mesh_.triangles[triangle][along < 0 ? k : (k + 1) % 3]];
   const double allowed = (radius + bend * (distance + radius)) * kSlack + kRounding;
-  return std::max(-along, along - 1) * edge.norm() <= allowed ? distance : kAnywhere;
+  if (std::max(-along, along - 1) * edge.norm() <= allowed) {
+    return distance;
+  }
+  return kAnywhere;
 }
 
 // A point's closest one on a face is the foot of the normal in a triangle, or on an edge or corner

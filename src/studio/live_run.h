@@ -134,7 +134,7 @@ class LiveRun final : private simulation::Sink {
   LiveState before_take_;
   std::array<bool, 2> is_holding_{};  ///< Indexed by hand.
 
-  std::optional<Passing> passing_;  ///< For the physics thread alone.
+  std::optional<Passing> passing_;  ///< The physics thread alone reads and writes it.
 
   std::thread thread_;
 };

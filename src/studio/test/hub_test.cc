@@ -257,25 +257,36 @@ TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
   EXPECT_TRUE(IsError(ask(b, &second, "take", {{"hand", 0}, {"occurrence", 1}}), "invalid"));
   EXPECT_TRUE(IsError(ask(a, &first, "take", {{"hand", 1}, {"occurrence", 1}}), "invalid"));
   EXPECT_TRUE(IsError(ask(b, &second, "reset", {}), "invalid"));
+  // A part is asked of whoever leads the hand that holds it.
+  EXPECT_EQ(ask(b, &second, "ask_part", {{"hand", 0}})["ok"], true);
+  EXPECT_EQ(first.Last("part_asked")["by"], b);
+  EXPECT_EQ(first.Last("part_asked")["to"], 1);
+  EXPECT_TRUE(second.Last("part_asked").is_null());
+  EXPECT_TRUE(IsError(ask(b, &second, "hand_over", {{"hand", 0}, {"to", 1}}), "invalid"));
+  EXPECT_TRUE(IsError(ask(a, &first, "hand_over", {{"hand", 0}, {"to", 1}}), "invalid"));
+  FakeLink viewer;
+  const std::string v = Join(Role::kViewer, &viewer);
+  EXPECT_TRUE(IsError(ask(v, &viewer, "ask_part", {{"hand", 0}}), "invalid"));
+  hub_.Leave(v);
   EXPECT_EQ(ask(b, &second, "take", {{"hand", 1}, {"occurrence", 1}})["ok"], true);
   hub_.Leave(a);
   EXPECT_EQ(ask(b, &second, "lease", {{"action", "request"}})["ok"], true);
   EXPECT_EQ(second.Last("roles")["clients"][0]["hands"], Json::array({0, 1}));
 }
 
-TEST_F(HubTest, NinthClientIsRefused) {
-  std::vector<FakeLink> links(9);
+TEST_F(HubTest, OneClientTooManyIsRefused) {
+  std::vector<FakeLink> links(Hub::kMaxClients + 1);
   std::set<std::string> ids;
-  for (std::size_t i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < Hub::kMaxClients; ++i) {
     ids.insert(Join(Role::kViewer, &links[i]));
   }
-  EXPECT_EQ(ids.size(), 8u);
-  const auto ninth = hub_.Join(Role::kOperator, &links[8]);
-  ASSERT_FALSE(ninth);
-  EXPECT_EQ(ninth.error().code, ErrorCode::kOutOfResource);
-  EXPECT_TRUE(links[8].texts.empty());
+  EXPECT_EQ(ids.size(), Hub::kMaxClients);
+  const auto last = hub_.Join(Role::kOperator, &links.back());
+  ASSERT_FALSE(last);
+  EXPECT_EQ(last.error().code, ErrorCode::kOutOfResource);
+  EXPECT_TRUE(links.back().texts.empty());
   hub_.Leave(*ids.begin());
-  EXPECT_TRUE(hub_.Join(Role::kOperator, &links[8]));
+  EXPECT_TRUE(hub_.Join(Role::kOperator, &links.back()));
 }
 
 TEST_F(HubTest, UnknownCommandIsAnsweredWithAnError) {

@@ -156,20 +156,21 @@ TEST_F(ServerTest, FramesThatAreNoneEndTheSocketAndFreeTheLease) {
   EXPECT_TRUE(AwaitEvent(next.get(), "hello")["has_lease"]);
 }
 
-TEST_F(ServerTest, NinthClientIsTurnedAway) {
+TEST_F(ServerTest, OneClientTooManyIsTurnedAway) {
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < Hub::kMaxClients; ++i) {
     clients.push_back(Join(Role::kViewer));
     EXPECT_FALSE(AwaitEvent(clients.back().get(), "hello").is_null());
   }
-  const auto ninth = Join(Role::kOperator);
-  const auto message = ninth->ReadMessage();
+  const auto last = Join(Role::kOperator);
+  const auto message = last->ReadMessage();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->opcode, Message::kClose);
   EXPECT_NE(message->bytes.find("16 clients"), std::string::npos);
   clients.pop_back();
   EXPECT_FALSE(Await(clients.front().get(), [](const Json& json) {
-                 return json.value("event", "") == "roles" && json["clients"].size() == 7;
+                 return json.value("event", "") == "roles" &&
+                        json["clients"].size() == Hub::kMaxClients - 1;
                }).is_null());
   EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
 }
