@@ -33,6 +33,7 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
 
 std::vector<haptics::TickOptions> TicksOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
   std::vector<haptics::TickOptions> ticks;
+  ticks.reserve(hands.size());
   for (const auto& hand : hands) {
     ticks.push_back(hand->tick_options());
   }

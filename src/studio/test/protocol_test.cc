@@ -171,6 +171,8 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   PumpUntil("devices");
   EXPECT_FALSE(Do({{"command", "forces"}, {"off", true}}).is_null());
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "lease"}, {"action", "request"}}).is_null());
+  EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}, {"hand", 1}}).is_null());
+  EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "ask_part"}, {"hand", 0}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
   ASSERT_TRUE(hvas::testing::AwaitTrue([this] {
     hub_.PublishStatus();
