@@ -223,7 +223,9 @@ TEST_F(ServerTest, WhoeverHoldsConnectionsOpenKeepsNobodyOut) {
   const auto known = Join(Role::kOperator);
   EXPECT_FALSE(AwaitEvent(known.get(), "hello").is_null());
   std::vector<std::unique_ptr<RawClient>> strangers;
-  for (int i = 0; i < 150; ++i) {  // more than twice what may be open
+  constexpr std::size_t kMany = 150;  // More than twice what may be open.
+  strangers.reserve(kMany);
+  while (strangers.size() < kMany) {
     strangers.push_back(std::make_unique<RawClient>(server_->port()));
   }
   EXPECT_EQ(Get("/").status, 200);
@@ -238,7 +240,9 @@ TEST_F(ServerTest, UploadFarAboveTheLimitIsAnsweredBeforeTheConnectionEnds) {
               "\r\nOrigin: " + origin() + "\r\nCookie: " + CookieOf(Role::kOperator) +
               "\r\nContent-Length: 50000000\r\n\r\n");
   // As browsers do, all is sent before the answer is read.
-  EXPECT_TRUE(client.Send(std::string(50'000'000, 'x')));
+  std::string body;
+  body.resize(50'000'000, 'x');
+  EXPECT_TRUE(client.Send(body));
   EXPECT_EQ(client.ReadReply().status, 413);
 }
 
