@@ -345,7 +345,7 @@ void Hub::PublishStatus() {
 }
 
 std::string Hub::AddUpload(const std::filesystem::path& file, const std::string& name) {
-  const std::string id = MakeToken();
+  std::string id = MakeToken();
   uploads_[id] = {file, name};
   return id;
 }
