@@ -127,14 +127,13 @@ class LiveRun final : private simulation::Sink {
    session time, so that it moves. */
   std::atomic<std::int64_t> begin_ns_;
   std::atomic<bool> is_stopping_{false};
+  std::optional<Passing> passing_;  ///< The physics thread alone reads and writes it.
 
   mutable std::mutex mutex_;  ///< Protects what follows; the haptic thread never takes it.
   std::vector<std::function<void()>> tasks_;
   LiveState observed_;
   LiveState before_take_;
   std::array<bool, 2> is_holding_{};  ///< Indexed by hand.
-
-  std::optional<Passing> passing_;  ///< The physics thread alone reads and writes it.
 
   std::thread thread_;
 };

@@ -1,18 +1,18 @@
 /** A part goes from one hand into another, of the same person or of somebody else. */
 
-import { isPointerHand } from "../model/hands";
+import { followsPointer } from "../model/hands";
 import { store, studio, ui, viewport } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
 
-const partName = (occurrence: number) => store.scene.value?.occurrences.find((part) => part.id === occurrence)?.name ?? "";
+const partName = (occurrence: number) => store.occurrences.value.get(occurrence)?.name ?? "";
 const heldIn = (hand: number) => store.held.value.find((held) => held.hand === hand) ?? null;
 
 /** Tells the holder that somebody would like to have the part. */
 export function PartAsked() {
   const asked = store.partAsked.value;
   const held = asked === null ? null : heldIn(asked.hand);
-  if (asked === null || held === null) {
+  if (asked === null || held === null || held.occurrence !== asked.occurrence) {
     return null;
   }
   const give = () => {
@@ -46,7 +46,7 @@ export function HandOverButton() {
   if (hands.length < 2 || own.length === 0 || ui.overlay.value !== null || store.demo.value || store.study.value !== null) {
     return null;
   }
-  const pointers = hands.map((each) => each.hand).filter((hand) => isPointerHand(hands, [hand], hand));
+  const pointers = hands.map((each) => each.hand).filter((hand) => followsPointer(hands, hand));
   const from = pointers.find((hand) => heldIn(hand) !== null);
   const to = pointers.find((hand) => heldIn(hand) === null);
   if (from === undefined || to === undefined) {

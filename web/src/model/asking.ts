@@ -9,7 +9,8 @@ export function noteAsking(store: Store, event: Asking): void {
   if (event.event === "lease_asked") {
     store.leaseAsked.value = event;
   } else {
-    store.partAsked.value = event;
+    const held = store.held.value.find(({ hand }) => hand === event.hand);
+    store.partAsked.value = held === undefined ? null : { ...event, occurrence: held.occurrence };
   }
 }
 

@@ -4,14 +4,17 @@ import type { Client, HandSetup } from "../protocol/messages";
 
 export const kPointer = "pointer";
 
-/** May the mouse of this page move the hand? An emulated device is held by it as well. */
-export function isPointerHand(hands: readonly HandSetup[], own: readonly number[], hand: number): boolean {
+/** Does a mouse move the hand? An emulated device is held by one as well. */
+export function followsPointer(hands: readonly HandSetup[], hand: number): boolean {
   const setup = hands.find((each) => each.hand === hand);
-  const isThere =
-    setup === undefined
-      ? hand === 0 && hands.length === 0
-      : setup.device.address === kPointer || setup.device.is_emulated;
-  return isThere && own.includes(hand);
+  return setup === undefined
+    ? hand === 0 && hands.length === 0
+    : setup.device.address === kPointer || setup.device.is_emulated;
+}
+
+/** May the mouse of this page move the hand? */
+export function isPointerHand(hands: readonly HandSetup[], own: readonly number[], hand: number): boolean {
+  return followsPointer(hands, hand) && own.includes(hand);
 }
 
 /** The client that leads a hand. */

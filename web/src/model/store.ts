@@ -182,8 +182,8 @@ export function makeStore() {
     clients,
     /** Who asks this page for control, and of which hands. */
     leaseAsked: signal<{ by: string; hands: readonly number[] } | null>(null),
-    /** Who asks for the part in a hand of this page, and for which hand of theirs. */
-    partAsked: signal<{ by: string; hand: number; to: number } | null>(null),
+    /** Who asks for the part that is in a hand of this page, and for which hand of theirs. */
+    partAsked: signal<{ by: string; hand: number; to: number; occurrence: number } | null>(null),
     examples: signal<readonly Example[]>([]),
     live,
     /** The recording that is shown in place of what is live. */
