@@ -155,6 +155,7 @@ export const deView: Record<keyof typeof enView, string> = {
   "log.filter.alarms": "Warnungen",
   "load.meshes": "Das Bild wird geholt",
   "load.contact shapes": "Kontaktformen werden vorbereitet",
+  "hint.others": "Jemand anderes hat das Teil. Bitten Sie darum, oder nehmen Sie ein anderes.",
   "zones.told": "Toleranzfelder als Abmaße vom Nennmaß in Mikrometern: Bohrung {hole}, Welle {shaft}",
   "action.join": "Mit eigener Hand mitarbeiten",
   "action.handOver": "Übergeben",

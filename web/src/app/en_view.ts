@@ -153,6 +153,7 @@ export const enView = {
   "log.filter.alarms": "Alarms",
   "load.meshes": "Fetching the picture",
   "load.contact shapes": "Preparing contact shapes",
+  "hint.others": "Somebody else has it. Ask for it, or take another part.",
   "zones.told": "Tolerance zones, as deviations from the nominal size in micrometres: hole {hole}, shaft {shaft}",
   "action.join": "Join with a hand of your own",
   "action.handOver": "Hand over",

@@ -33,6 +33,7 @@ export function HintBar() {
   const held = store.held.value.find((h) => h.hand === view.hand.value) ?? store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
   const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: leadsHand() });
+  const isOthers = held !== null && leadsHand() && !store.ownHands.value.includes(held.hand);
   const mayAsk = store.role.value === "operator" && studio.study.experimenter.value === null;
   const mayLetGo = held !== null && isEnabled(findAction("release"));
   return (
@@ -42,7 +43,7 @@ export function HintBar() {
         {hasTwo ? <span class="badge">{t("hands.name", { n: (held?.hand ?? view.hand.value) + 1 })}</span> : null}
         <strong>{hint.params.part || t(`state.${hint.state}`)}</strong>
         {hint.params.part ? <span class="hint-state">{t(`state.${hint.state}`)}</span> : null}
-        <span class="hint-words">{t(hint.key, hint.params)}</span>
+        <span class="hint-words">{isOthers ? t("hint.others") : t(hint.key, hint.params)}</span>
       </div>
       <span class="hint-caught" ref={caught}>
         {t("hint.caught")}
