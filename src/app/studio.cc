@@ -31,6 +31,7 @@
 #include "cad/input_file.h"
 #include "studio/certificate.h"
 #include "studio/saved_work.h"
+#include "studio/recent_files.h"
 #include "studio/server.h"
 #include "studio/state_folder.h"
 #include "studio/study_desk.h"
@@ -70,6 +71,16 @@ std::vector<studio::Example> FindExamples() {
     return !std::filesystem::exists(example.file);
   });
   return examples;
+}
+
+/** The examples, and the files that were opened last. */
+std::vector<studio::Example> FindOffered(const std::filesystem::path& recent) {
+  std::vector<studio::Example> offered = FindExamples();
+  for (const std::filesystem::path& file : studio::LoadRecentFiles(recent)) {
+    offered.push_back({fmt::format("recent-{}", offered.size()), file.filename().string(),
+                       file.parent_path().string(), file, true});
+  }
+  return offered;
 }
 
 /** Adds the tools and fixtures that are shipped. */
@@ -297,7 +308,9 @@ int RunStudio(const StudioOptions& options) {
     return ReportFailure(desk.error());
   }
   served.desk = desk->get();
-  studio::Server server(&workbench, FindExamples(), served);
+  const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state");
+  const std::filesystem::path recent = (state ? *state : scratch->path()) / "studio" / "recent.json";
+  studio::Server server(&workbench, FindOffered(recent), served);
   if (const auto started = server.Start(); !started) {
     return ReportFailure(started.error());
   }
@@ -317,6 +330,9 @@ int RunStudio(const StudioOptions& options) {
     workbench.opener().Resume(*work);
   } else if (!options.load.file.empty()) {
     workbench.opener().Open(options.load.file, options.load.file.filename().string());
+  }
+  if (!options.load.file.empty()) {
+    studio::NoteRecentFile(recent, FullPath(options.load.file));
   }
   if (options.opens_browser) {
     OpenBrowser(

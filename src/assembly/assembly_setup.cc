@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "session/make_simulation.h"
 #include "session/recorded_model.h"
 
 namespace hvas::assembly {
@@ -26,15 +25,23 @@ std::vector<Hand> ListOf(Hand hand) {
 
 RunSetup::RunSetup(std::shared_ptr<const simulation::Model> model, std::vector<Hand> hands)
     : hands_(std::move(hands)),
-      simulation_(session::MakeSimulation(std::move(model), ListTicks(hands_))) {}
+      simulation_(
+          std::make_unique<simulation::Simulation>(std::move(model), ListTicks(hands_))) {}
 
 simulation::Persons RunSetup::ListPersons() const {
-  return {hands_.front().person.get(), hands_.size() == 1 ? nullptr : hands_.back().person.get()};
+  simulation::Persons persons{};
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    persons[i] = hands_[i].person.get();
+  }
+  return persons;
 }
 
 simulation::Execution RunSetup::MakeExecution(double limit_s) {
-  return part_run().MakeExecution(hands_.front().active(), limit_s,
-                                  hands_.size() == 1 ? nullptr : hands_.back().active());
+  simulation::Operators operators{};
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    operators[i] = hands_[i].active();
+  }
+  return part_run().MakeExecution(operators, limit_s);
 }
 
 AssemblySetup::AssemblySetup(std::shared_ptr<const simulation::Model> model,

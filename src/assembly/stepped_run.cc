@@ -9,7 +9,6 @@
 
 #include "assembly/hand.h"
 #include "base/check.h"
-#include "session/make_simulation.h"
 
 namespace hvas::assembly {
 namespace {
@@ -125,7 +124,7 @@ SteppedRun::SteppedRun(std::shared_ptr<const simulation::Model> model,
   tick.condition = options.condition;
   tick.guidance.contact_in_holes = options.contact_in_holes;
   tick.guidance.threads_turn = options.threads_turn;
-  simulation_ = session::MakeSimulation(model_, {tick});
+  simulation_ = std::make_unique<simulation::Simulation>(model_, tick);
   const std::vector<simulation::PartState> parts = ListBeginning();
   simulation_->Restore(parts);
   simulation_->physics().Prepare(step);
@@ -136,7 +135,7 @@ SteppedRun::SteppedRun(std::shared_ptr<const simulation::Model> model,
   keeper_ = std::make_shared<RowKeeper>(&rows_);
   simulation::Execution execution;
   execution.simulation = simulation_.get();
-  execution.hand = hand_.get();
+  execution.hands = {hand_.get()};
   execution.sink = keeper_.get();
   execution.limit_ns = std::numeric_limits<std::int64_t>::max();
   lockstep_ = std::make_unique<simulation::Lockstep>(execution);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <span>
 
@@ -9,6 +10,8 @@
 #include "spatial/pose.h"
 
 namespace hvas::haptics {
+
+inline constexpr std::size_t kMaxHands = 8;  ///< Hands in one scene: a choice.
 
 /** One implicit Euler step of a rigid body under stiff springs, dampers and inequality constraints,
  together with free bodies that it touches.
@@ -26,11 +29,10 @@ namespace hvas::haptics {
  No allocation after construction; RT-safe throughout. */
 class ConstraintSolver {
  public:
-  // Rooms that are made once, so that a step allocates nothing: the held part, that of the
-  // other hand, eight free bodies and two fasteners; twice the contacts of a query; their patches;
-  // two rows for each of two fits, one for each fastener, one for parts that give and three for a
-  // thread. Choices.
-  static constexpr int kMaxBodies = 12;
+  // Rooms that are made once, so that a step allocates nothing: what each hand holds, eight free
+  // bodies and two fasteners; twice the contacts of a query; their patches; two rows for each of
+  // two fits, one for each fastener, one for parts that give and three for a thread. Choices.
+  static constexpr int kMaxBodies = kMaxHands + 10;
   static constexpr int kMaxContacts = 128;
   static constexpr int kMaxPatches = 32;
   static constexpr int kMaxBoundedRows = 10;

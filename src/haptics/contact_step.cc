@@ -22,6 +22,10 @@ constexpr double kDepthNoise = 2e-6;  // [m]: what a depth may be wrong by. A ch
  it up by 10 rad/s^2. A choice. */
 constexpr double kTurnedInertia = 1e-4;
 constexpr double kHeldShare = 0.9;  // Of its friction: less does not move a fastener. A choice.
+/** Share of a new push on another hand's part, beside that of the tick before, where there are more
+ than two hands. With all of it a block between two others goes to and fro from tick to tick, by 4 %
+ of the force; with half of it all come to rest (many_hands_test). */
+constexpr double kNewShare = 0.5;
 
 /** The first share of what is deeper than allowed already must not become deeper. */
 double AllowedDepth(double deepest, const ContactOptions& contact) noexcept {
@@ -35,6 +39,22 @@ spatial::Twist Limited(const spatial::Twist& V, double max_speed, double max_tur
   const double scale =
       std::min({1.0, speed > 0 ? max_speed / speed : 1.0, turn > 0 ? max_turn_rate / turn : 1.0});
   return {scale * V.w, scale * V.v};
+}
+
+bool HasBody(std::span<const contact::BodyId> bodies, contact::BodyId id) noexcept {
+  return std::find(bodies.begin(), bodies.end(), id) != bodies.end();
+}
+
+/** What another hand holds; empty where it holds nothing. */
+std::span<const contact::BodyId> ListHeldBy(const HandExchange& other) noexcept {
+  return other.is_holding() ? std::span<const contact::BodyId>(other.displayed.part->bodies)
+                            : std::span<const contact::BodyId>();
+}
+
+/** Whether a loose part moves, as another hand has woken it. */
+bool MovesBody(const HandExchange& other, contact::BodyId id) noexcept {
+  return std::any_of(other.awake.begin(), other.awake.end(),
+                     [id](const FreeBody& body) { return body.id == id; });
 }
 
 /** Largest distance of a point of a shape's box from Q [m]. */
@@ -64,15 +84,18 @@ void ContactStep::MoveInScene(const HeldPart& part, const spatial::Pose& X_WB) n
   }
 }
 
-void ContactStep::Begin(const HeldPart* held, const HandExchange* other) noexcept {
+void ContactStep::Begin(const HeldPart* held, std::span<const HandExchange> others) noexcept {
   held_ = held;
-  other_ = other;
-  const bool has_pushed = other_index_ != ConstraintSolver::kWorld;
-  if (!has_pushed || other == nullptr || other->hold != other_hold_) {
-    F_other_W_ = {};
+  others_ = others;
+  for (const HandExchange& other : others_) {
+    OtherPart& part = other_parts_[other.hand];
+    const bool has_pushed = part.index != ConstraintSolver::kWorld;
+    if (!has_pushed || other.hold != part.hold) {
+      part.F_W = {};
+    }
+    part.index = ConstraintSolver::kWorld;
+    part.is_solved_here = false;
   }
-  other_index_ = ConstraintSolver::kWorld;
-  has_solved_contact_ = false;
   // What was not touched in the last tick has been stopped by its friction.
   for (std::size_t i = turned_count_; i < kMaxTurned; ++i) {
     turned_[i].rate = 0;
@@ -83,15 +106,24 @@ void ContactStep::Begin(const HeldPart* held, const HandExchange* other) noexcep
 }
 
 spatial::Wrench ContactStep::CalcPush(std::uint32_t hold) const noexcept {
-  return other_ != nullptr && other_->pushed_hold == hold ? other_->F_pushed_W : spatial::Wrench();
+  spatial::Wrench F_W;
+  for (const HandExchange& other : others_) {
+    if (other.pushed_hold == hold) {
+      F_W.t += other.F_pushed_W.t;
+      F_W.f += other.F_pushed_W.f;
+    }
+  }
+  return F_W;
 }
 
-void ContactStep::FillExchange(HandExchange* exchange) const noexcept {
+void ContactStep::FillExchange(std::size_t to, HandExchange* exchange) const noexcept {
+  const OtherPart& part = other_parts_[to];
+  exchange->hand = hand_;
   exchange->awake = bodies_.awake();
-  exchange->F_pushed_W = other_index_ == ConstraintSolver::kWorld ? spatial::Wrench() : F_other_W_;
-  exchange->pushed_hold = other_hold_;
-  exchange->has_solved_contact = has_solved_contact_;
-  exchange->contact = mutual_;
+  exchange->F_pushed_W = part.index == ConstraintSolver::kWorld ? spatial::Wrench() : part.F_W;
+  exchange->pushed_hold = part.hold;
+  exchange->has_solved_contact = part.is_solved_here;
+  exchange->contact = part.mutual;
 }
 
 ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::size_t member,
@@ -101,7 +133,7 @@ ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::siz
   held.query.margin = margin;
   held.query.point_budget = effort_.point_budget;
   held.query.ignored = {ignored_.data(), guide_.CollectIgnored(part, ignored_, member)};
-  held.query.left_out[1] = unmet_;
+  std::copy(unmet_.begin(), unmet_.end(), held.query.left_out.begin() + 1);
   if (member == 0) {
     held.shape = part.shape.get();
     held.X_WS = X_WB;
@@ -124,34 +156,38 @@ std::span<const contact::BodyId> ContactStep::ListHeld() const noexcept {
                           : std::span<const contact::BodyId>();
 }
 
-std::span<const contact::BodyId> ContactStep::ListHeldByOther() const noexcept {
-  return other_ != nullptr && other_->is_holding()
-             ? std::span<const contact::BodyId>(other_->displayed.part->bodies)
-             : std::span<const contact::BodyId>();
+const HandExchange* ContactStep::FindHolder(contact::BodyId id) const noexcept {
+  const auto found = std::find_if(others_.begin(), others_.end(), [id](const HandExchange& other) {
+    return HasBody(ListHeldBy(other), id);
+  });
+  return found == others_.end() ? nullptr : &*found;
 }
 
-bool ContactStep::IsHeldByOther(contact::BodyId id) const noexcept {
-  const std::span<const contact::BodyId> held = ListHeldByOther();
-  return std::find(held.begin(), held.end(), id) != held.end();
+template <typename IsLeft>
+void ContactStep::LeaveOut(IsLeft is_left) noexcept {
+  unmet_ = {};
+  for (const HandExchange& other : others_) {
+    if (is_left(other)) {
+      unmet_[other.hand] = ListHeldBy(other);
+    }
+  }
 }
 
 bool ContactStep::IsMovedByOther(contact::BodyId id) const noexcept {
   const contact::BodyId leader = bodies_.LeaderOf(id);
-  return other_ != nullptr &&
-         std::any_of(other_->awake.begin(), other_->awake.end(),
-                     [leader](const FreeBody& body) { return body.id == leader; });
+  return std::any_of(others_.begin(), others_.end(), [leader](const HandExchange& other) {
+    return MovesBody(other, leader);
+  });
 }
 
 bool ContactStep::IsHeldStillByOther(contact::BodyId id) const noexcept {
-  if (other_ == nullptr || other_->held_still == nullptr) {
-    return false;
-  }
-  const std::vector<contact::BodyId>& still = other_->held_still->bodies;
-  return std::find(still.begin(), still.end(), id) != still.end();
+  return std::any_of(others_.begin(), others_.end(), [id](const HandExchange& other) {
+    return other.held_still != nullptr && HasBody(other.held_still->bodies, id);
+  });
 }
 
 bool ContactStep::IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB,
-                             const HandExchange* other) noexcept {
+                             std::span<const HandExchange> others) noexcept {
   constexpr double kSamePlace = 1e-6;  // [m], [rad]: parts are put together as exactly. A choice.
   const spatial::Pose& X_now = scene_.pose(target.leader());
   if ((X_now.p() - X_WB.p()).norm() > kSamePlace ||
@@ -164,14 +200,12 @@ bool ContactStep::IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB
   if (!is_one || bodies_.FindAwake(target.leader()) != nullptr) {
     return false;
   }
-  const auto has_other = [&](contact::BodyId body) {
-    const std::vector<contact::BodyId>* held =
-        other->displayed.part != nullptr ? &other->displayed.part->bodies : nullptr;
-    return (held != nullptr && std::find(held->begin(), held->end(), body) != held->end()) ||
-           std::any_of(other->awake.begin(), other->awake.end(),
-                       [body](const FreeBody& free) { return free.id == body; });
-  };
-  return other == nullptr || std::none_of(target.bodies.begin(), target.bodies.end(), has_other);
+  return std::none_of(others.begin(), others.end(), [&target](const HandExchange& other) {
+    return std::any_of(target.bodies.begin(), target.bodies.end(),
+                       [&other](contact::BodyId body) {
+                         return HasBody(ListHeldBy(other), body) || MovesBody(other, body);
+                       });
+  });
 }
 
 double ContactStep::CalcFreeReach(contact::BodyId id) const noexcept {
@@ -191,8 +225,8 @@ double ContactStep::CalcFreeReach(contact::BodyId id) const noexcept {
 TouchingBody ContactStep::Touch(const contact::Contact& c, ConstraintSolver* solver) noexcept {
   TouchingBody other;
   other.id = c.body.value();
-  if (IsHeldByOther(c.body)) {
-    other.index = other_index_;
+  if (const HandExchange* holder = FindHolder(c.body)) {
+    other.index = other_parts_[holder->hand].index;
     other.X_WB = scene_.pose(c.body);
     return other;
   }
@@ -379,7 +413,7 @@ void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
   if (options_.condition == Condition::kConstraint) {
     return;
   }
-  unmet_ = is_solved_by_other() ? ListHeldByOther() : std::span<const contact::BodyId>();
+  LeaveOut([](const HandExchange& other) { return other.has_solved_contact; });
   const HeldPart& part = *displayed.part;
   account_.is_truncated =
       account_.is_truncated || part.gives.size() > GivingRows::kMaxCurves;  // Some do not resist.
@@ -406,45 +440,59 @@ void ContactStep::AddHeldContacts(const DisplayedPart& displayed,
   unmet_ = {};
 }
 
-void ContactStep::AddOtherPart(ConstraintSolver* solver) noexcept {
-  if (other_ == nullptr || !other_->is_holding()) {
-    return;
+void ContactStep::AddOtherParts(ConstraintSolver* solver) noexcept {
+  for (const HandExchange& other : others_) {
+    if (!other.is_holding()) {
+      continue;
+    }
+    OtherPart& part = other_parts_[other.hand];
+    // But for what this hand pushes it with, it goes on as in its own last step.
+    const HeldResponse& response = other.response;
+    Vec6 impulse;
+    impulse << options_.dt * part.F_W.t, options_.dt * part.F_W.f;
+    part.V << response.V.w, response.V.v;
+    part.V += response.inverse * (response.gain - impulse);
+    part.hold = other.hold;
+    part.index = solver->AddBody(other.displayed.p_WCm(), part.V, response.inverse);
   }
-  // But for what this hand pushes it with, it goes on as in its own last step.
-  const HeldResponse& response = other_->response;
-  Vec6 impulse;
-  impulse << options_.dt * F_other_W_.t, options_.dt * F_other_W_.f;
-  V_other_ << response.V.w, response.V.v;
-  V_other_ += response.inverse * (response.gain - impulse);
-  other_hold_ = other_->hold;
-  other_index_ = solver->AddBody(other_->displayed.p_WCm(), V_other_, response.inverse);
 }
 
 double ContactStep::CalcOtherSpeed() const noexcept {
-  return other_index_ == ConstraintSolver::kWorld
-             ? 0.0
-             : V_other_.tail<3>().norm() + V_other_.head<3>().norm() * other_->displayed.reach;
+  double speed = 0;
+  for (const HandExchange& other : others_) {
+    const OtherPart& part = other_parts_[other.hand];
+    if (part.index != ConstraintSolver::kWorld) {
+      speed = std::max(
+          speed, part.V.tail<3>().norm() + part.V.head<3>().norm() * other.displayed.reach);
+    }
+  }
+  return speed;
 }
 
-void ContactStep::PushOtherPart(const ConstraintSolver& solver) noexcept {
-  if (other_index_ == ConstraintSolver::kWorld) {
-    return;
+void ContactStep::PushOtherParts(const ConstraintSolver& solver) noexcept {
+  for (const HandExchange& other : others_) {
+    OtherPart& part = other_parts_[other.hand];
+    if (part.index == ConstraintSolver::kWorld) {
+      continue;
+    }
+    const spatial::Twist V = solver.velocity(part.index);
+    Vec6 change;
+    change << V.w, V.v;
+    change -= part.V;
+    const Vec6 F = other.response.matrix * change / options_.dt;
+    const double share = others_.size() > 1 ? kNewShare : 1.0;
+    part.F_W = {part.F_W.t + share * (F.head<3>() - part.F_W.t),
+                part.F_W.f + share * (F.tail<3>() - part.F_W.f)};
+    // Where it will be at the end of the step: what pushes it does not stop at where it was.
+    const DisplayedPart& displayed = other.displayed;
+    MoveInScene(*displayed.part,
+                MoveAbout(displayed.X_WD, displayed.part->p_BoBcm_B, V, options_.dt));
   }
-  const spatial::Twist V = solver.velocity(other_index_);
-  Vec6 change;
-  change << V.w, V.v;
-  change -= V_other_;
-  const Vec6 F = other_->response.matrix * change / options_.dt;
-  F_other_W_ = {F.head<3>(), F.tail<3>()};
-  // Where it will be at the end of the step: what pushes it does not stop at where it was.
-  const DisplayedPart& other_part = other_->displayed;
-  MoveInScene(*other_part.part,
-              MoveAbout(other_part.X_WD, other_part.part->p_BoBcm_B, V, options_.dt));
 }
 
 void ContactStep::AddBodies(ConstraintSolver* solver) noexcept {
   friction_.BeginTick();
-  AddOtherPart(solver);
+  AddOtherParts(solver);
   for (FreeBody& body : bodies_.awake()) {
     body.index = solver->AddBody(bodies_.MakeSolverBody(body, options_.gravity_W, options_.dt));
   }
@@ -531,7 +579,7 @@ void ContactStep::MoveFreeBodies(const ConstraintSolver& solver) noexcept {
 void ContactStep::Finish(const ConstraintSolver& solver) noexcept {
   RecordContacts(solver);
   friction_.EndTick(solver, options_.dt);
-  PushOtherPart(solver);
+  PushOtherParts(solver);
   MoveTurned(solver);
   MoveFreeBodies(solver);
 }
@@ -544,7 +592,7 @@ void ContactStep::StepFreeBodies(ConstraintSolver* solver) noexcept {
   AddBodies(solver);
   AddFreeContacts(solver);
   (void)solver->Solve(effort_.iterations);
-  PushOtherPart(*solver);
+  PushOtherParts(*solver);
   MoveFreeBodies(*solver);
   friction_.EndTick(*solver, options_.dt);
 }
@@ -558,10 +606,11 @@ void ContactStep::MoveDisplayed(const spatial::Twist& V_Cm, DisplayedPart* displ
   const auto at = [&](double candidate) {
     return MoveAbout(X_WD, part.p_BoBcm_B, V, candidate * options_.dt);
   };
-  // To stop where it meets the other's part would not keep that one from coming on.
-  const bool passes_other =
-      is_solved_by_other() || (has_solved_contact_ && other_->response.yields);
-  unmet_ = passes_other ? ListHeldByOther() : std::span<const contact::BodyId>();
+  // To stop where it meets another hand's part would not keep that one from coming on.
+  LeaveOut([this](const HandExchange& other) {
+    return other.has_solved_contact ||
+           (other_parts_[other.hand].is_solved_here && other.response.yields);
+  });
   if (options_.condition != Condition::kConstraint) {
     // Free bodies have moved already; those near have come nearer.
     const double speed = V.v.norm() + V.w.norm() * displayed->reach;
@@ -603,22 +652,30 @@ void ContactStep::MeasureDepth(const DisplayedPart& displayed) noexcept {
 
 void ContactStep::RecordContacts(const ConstraintSolver& solver) noexcept {
   double hardest = 0;
-  mutual_ = {};
-  has_solved_contact_ = leads_ && other_index_ != ConstraintSolver::kWorld;
-  if (is_solved_by_other()) {
-    const MutualContact& mutual = other_->contact;
-    account_.contact_count = mutual.contact_count;
+  for (const HandExchange& other : others_) {
+    OtherPart& part = other_parts_[other.hand];
+    part.mutual = {};
+    part.is_solved_here = hand_ < other.hand && part.index != ConstraintSolver::kWorld;
+    if (!other.has_solved_contact) {
+      continue;
+    }
+    const MutualContact& mutual = other.contact;
+    const double force = mutual.f_C_W.norm();
+    account_.contact_count += mutual.contact_count;
     account_.deepest = std::min(account_.deepest, mutual.deepest);
-    account_.p_WC = mutual.p_WC;
-    account_.f_C_W = -mutual.f_C_W;
-    account_.contact_body = mutual.body;
-    hardest = mutual.f_C_W.norm();
+    if (force >= hardest) {
+      hardest = force;
+      account_.p_WC = mutual.p_WC;
+      account_.f_C_W = -mutual.f_C_W;
+      account_.contact_body = mutual.body;
+    }
   }
   for (int i = 0; i < held_contacts_; ++i) {
     const contact::Contact& c = contacts_[static_cast<std::size_t>(i)];
     const double force = solver.normal_force(i);
-    if (has_solved_contact_ && IsHeldByOther(c.body)) {
-      RecordMutual(c, solver.contact_force(i));
+    const HandExchange* holder = FindHolder(c.body);
+    if (holder != nullptr && other_parts_[holder->hand].is_solved_here) {
+      RecordMutual(c, solver.contact_force(i), &other_parts_[holder->hand].mutual);
     }
     if (force <= 1e-6) {
       continue;
@@ -634,16 +691,17 @@ void ContactStep::RecordContacts(const ConstraintSolver& solver) noexcept {
   }
 }
 
-void ContactStep::RecordMutual(const contact::Contact& c, const Vec3& f_C_W) noexcept {
-  mutual_.body = held_->body;
-  mutual_.deepest = std::min(mutual_.deepest, c.distance);
+void ContactStep::RecordMutual(const contact::Contact& c, const Vec3& f_C_W,
+                               MutualContact* mutual) noexcept {
+  mutual->body = held_->body;
+  mutual->deepest = std::min(mutual->deepest, c.distance);
   if (f_C_W.norm() <= 1e-6) {
     return;
   }
-  ++mutual_.contact_count;
-  if (f_C_W.norm() > mutual_.f_C_W.norm()) {
-    mutual_.p_WC = c.p_WC;
-    mutual_.f_C_W = f_C_W;
+  ++mutual->contact_count;
+  if (f_C_W.norm() > mutual->f_C_W.norm()) {
+    mutual->p_WC = c.p_WC;
+    mutual->f_C_W = f_C_W;
   }
 }
 

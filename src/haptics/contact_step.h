@@ -24,8 +24,8 @@ struct TurnedFastener {
   double rate{0};                       ///< Counter-clockwise about its axis [rad/s].
 };
 
-/** Contacts in one step of a hand: of the held part, of loose parts that move, and of the part that
- the other hand holds, which joins the step as a body with its own response. Finds them, gives them
+/** Contacts in one step of a hand: of the held part, of loose parts that move, and of the parts that
+ other hands hold, which join the step as bodies with their own responses. Finds them, gives them
  to the solver with their friction, and moves what was solved as far as it may go (X7, X11).
 
  All but SetProperties is RT-safe. */
@@ -35,10 +35,11 @@ class ContactStep {
    bodies are moved in it.
    @param guide  Mates of the held part: contact leaves their faces to them.
    All three outlive this object.
-   @param leads  Of two hands this one ticks first, and solves the contact of the two held parts. */
+   @param hand  Index of the hand. Of two hands the one with the lower index ticks first, and solves
+   the contact of their held parts. */
   ContactStep(const TickOptions& options, contact::Scene* scene, const MateGuide* guide,
-              bool leads) noexcept
-      : options_(options), scene_(*scene), guide_(*guide), leads_(leads) {}
+              std::size_t hand) noexcept
+      : options_(options), scene_(*scene), guide_(*guide), hand_(hand) {}
 
   void SetProperties(contact::BodyId id, const BodyProperties& properties) {
     bodies_.SetProperties(id, properties);
@@ -101,7 +102,7 @@ class ContactStep {
   /** Whether loose parts rest at a pose of the first of them, and no other hand has or moves any.
    */
   [[nodiscard]] bool IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB,
-                                const HandExchange* other) noexcept;
+                                std::span<const HandExchange> others) noexcept;
 
   /** Largest distance of a point of the part, with its members, from its centre of mass [m]. */
   [[nodiscard]] static double CalcReach(const HeldPart& part) noexcept;
@@ -111,10 +112,10 @@ class ContactStep {
 
   /** A tick begins.
    @param held   What this hand holds; null: nothing.
-   @param other  What the other hand gave after its last tick; null: there is one hand. */
-  void Begin(const HeldPart* held, const HandExchange* other) noexcept;
+   @param others  What the other hands gave after their last ticks, for use until End(). */
+  void Begin(const HeldPart* held, std::span<const HandExchange> others) noexcept;
 
-  /** Adds loose bodies that move, and the other hand's part, to the step. */
+  /** Adds loose bodies that move, and the parts of other hands, to the step. */
   void AddBodies(ConstraintSolver* solver) noexcept;
 
   /** Adds contacts of the held part to the step. */
@@ -143,21 +144,21 @@ class ContactStep {
    @returns the account of the held part's contacts since the last tick ended. */
   ContactAccount End() noexcept {
     held_ = nullptr;
-    other_ = nullptr;
+    others_ = {};
     return std::exchange(account_, ContactAccount());
   }
 
-  /** Contacts that pressed on the held part in the last tick, but for those with the other hand's
-   part that its step has solved. */
+  /** Contacts that pressed on the held part in the last tick, but for those with parts
+   of other hands that their steps have solved. */
   [[nodiscard]] std::span<const PressingContact> pressing() const noexcept {
     return {pressing_.data(), pressing_count_};
   }
 
-  /** Wrench that the other hand's last step had on the held part, at its centre of mass. */
+  /** Wrench that the last steps of other hands had on the held part, at its centre of mass. */
   [[nodiscard]] spatial::Wrench CalcPush(std::uint32_t hold) const noexcept;
 
-  /** Fills in what this step has for the other hand. */
-  void FillExchange(HandExchange* exchange) const noexcept;
+  /** Fills in what this step has for the hand of index `to`. */
+  void FillExchange(std::size_t to, HandExchange* exchange) const noexcept;
 
  private:
   /** A shape of what is held: of the part itself, or of a member of its subassembly. */
@@ -170,13 +171,24 @@ class ContactStep {
   [[nodiscard]] HeldShape MakeHeldShape(const HeldPart& part, std::size_t member,
                                         const spatial::Pose& X_WB, double margin) noexcept;
   [[nodiscard]] std::span<const contact::BodyId> ListHeld() const noexcept;
-  [[nodiscard]] std::span<const contact::BodyId> ListHeldByOther() const noexcept;
-  [[nodiscard]] bool IsHeldByOther(contact::BodyId id) const noexcept;
 
-  /** The other hand's last step has solved the contact of the two held parts. */
-  [[nodiscard]] bool is_solved_by_other() const noexcept {
-    return other_ != nullptr && other_->has_solved_contact;
-  }
+  /** What this hand has with another one. */
+  struct OtherPart {
+    int index{ConstraintSolver::kWorld};  ///< Its part in the solver, in this tick.
+    Vec6 V{Vec6::Zero()};     ///< Velocity of its part without what touches it in this step.
+    spatial::Wrench F_W;      ///< Wrench of the last step on its part, at the centre of mass.
+    std::uint32_t hold{0};    ///< Its hold that this was for.
+    bool is_solved_here{false};  ///< This step has solved the contact of the two held parts.
+    MutualContact mutual;        ///< That contact.
+  };
+
+  /** The hand that holds a body; null where none of the others does. */
+  [[nodiscard]] const HandExchange* FindHolder(contact::BodyId id) const noexcept;
+  /** Leaves the parts of some other hands out of queries of the held part, until
+   unmet_ is cleared.
+   @param is_left  Whether the part of a hand is left out. */
+  template <typename IsLeft>
+  void LeaveOut(IsLeft is_left) noexcept;
 
   [[nodiscard]] bool IsMovedByOther(contact::BodyId id) const noexcept;
   [[nodiscard]] bool IsHeldStillByOther(contact::BodyId id) const noexcept;
@@ -191,19 +203,20 @@ class ContactStep {
   bool AddContact(const TouchingBody& body, const TouchingBody& other, const fits::FrictionLaw& law,
                   double compliance, double rolling_arm, const contact::Contact& c,
                   ConstraintSolver* solver) noexcept;
-  void AddOtherPart(ConstraintSolver* solver) noexcept;
+  void AddOtherParts(ConstraintSolver* solver) noexcept;
+  /** Largest speed of a point of a part in another hand [m/s]. */
   [[nodiscard]] double CalcOtherSpeed() const noexcept;
-  void PushOtherPart(const ConstraintSolver& solver) noexcept;
+  void PushOtherParts(const ConstraintSolver& solver) noexcept;
   [[nodiscard]] bool IsFreeBodyAt(const FreeBody& body, const spatial::Pose& X_WB,
                                   double tolerance) noexcept;
   void MoveFreeBodies(const ConstraintSolver& solver) noexcept;
   void RecordContacts(const ConstraintSolver& solver) noexcept;
-  void RecordMutual(const contact::Contact& c, const Vec3& f_C_W) noexcept;
+  void RecordMutual(const contact::Contact& c, const Vec3& f_C_W, MutualContact* mutual) noexcept;
 
   const TickOptions& options_;
   contact::Scene& scene_;
   const MateGuide& guide_;
-  const bool leads_;
+  const std::size_t hand_;
   Effort effort_;
   contact::QueryWorkspace workspace_;
   FrictionMemory friction_;
@@ -219,20 +232,15 @@ class ContactStep {
   std::size_t pressing_count_{0};
 
   // Values of the present tick.
-  const HeldPart* held_{nullptr};       ///< Null between ticks.
-  const HandExchange* other_{nullptr};  ///< Null between ticks, and where there is one hand.
+  const HeldPart* held_{nullptr};        ///< Null between ticks.
+  std::span<const HandExchange> others_;  ///< Empty between ticks.
   ContactAccount account_;
   int held_contacts_{0};  ///< Contacts of the held part in the solver; the first ones.
   double clearance_{0};   ///< Least distance of the held part before the step, or the margin [m].
-  int other_index_{ConstraintSolver::kWorld};  ///< The other hand's part in the solver.
-  Vec6 V_other_{Vec6::Zero()};              ///< Its velocity without what touches it in this step.
-  std::span<const contact::BodyId> unmet_;  ///< Bodies that the held part does not meet now.
+  /** Bodies that the held part does not meet now, by the index of the hand that has them. */
+  std::array<std::span<const contact::BodyId>, kMaxHands> unmet_{};
 
-  // For the other hand.
-  spatial::Wrench F_other_W_;    ///< Wrench of the last step on its part, at the centre of mass.
-  std::uint32_t other_hold_{0};  ///< Its hold that this was for.
-  bool has_solved_contact_{false};
-  MutualContact mutual_;
+  std::array<OtherPart, kMaxHands> other_parts_;  ///< By the index of the hand.
 };
 
 }  // namespace hvas::haptics

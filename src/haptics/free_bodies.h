@@ -37,8 +37,8 @@ struct FreeBody {
  Everything but SetProperties is RT-safe. */
 class FreeBodies {
  public:
-  /** Besides what the two hands hold, and two fasteners that a tool turns. */
-  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - 4;
+  /** Besides what all hands hold, and two fasteners that a tool turns. */
+  static constexpr std::size_t kMaxAwake = ConstraintSolver::kMaxBodies - kMaxHands - 2;
 
   /** A body that may move, once it is made loose. Not RT-safe: allocates. */
   void SetProperties(contact::BodyId id, const BodyProperties& properties);

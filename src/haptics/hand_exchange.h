@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -20,7 +21,7 @@ struct HeldResponse {
   Mat6 inverse{Mat6::Zero()};  ///< Change of V for an impulse.
 };
 
-/** Contact of the two held parts, as the leading hand found it. */
+/** Contact of the parts that two hands hold, as the leading hand found it. */
 struct MutualContact {
   int contact_count{0};
   double deepest{std::numeric_limits<double>::infinity()};  ///< [m]
@@ -29,15 +30,17 @@ struct MutualContact {
   contact::BodyId body;      ///< The leading hand's part.
 };
 
-/** What one of two hands that work in one scene gives the other, after each of its ticks. */
+/** What a hand gives another one that works in the same scene, after each of its ticks. */
 struct HandExchange {
+  std::size_t hand{0};                    ///< Index of the hand that gives.
   DisplayedPart displayed;                ///< What it holds, as it stands in the scene.
   std::uint32_t hold{0};                  ///< Number of this hold, counted from 1.
   HeldResponse response;                  ///< The displayed part's.
   std::span<const FreeBody> awake;        ///< Loose parts that this hand moves.
   const RigidGroup* held_still{nullptr};  ///< Loose parts that its part is being put to.
-  spatial::Wrench F_pushed_W;      ///< Its last step's on the other's part, at the centre of mass.
-  std::uint32_t pushed_hold{0};    ///< The hold of the other hand that F_pushed_W is for.
+  /** Wrench of its last step on the receiver's part, at the centre of mass. */
+  spatial::Wrench F_pushed_W;
+  std::uint32_t pushed_hold{0};    ///< The receiver's hold that F_pushed_W is for.
   bool has_solved_contact{false};  ///< Its last step has solved the contact of the two parts.
   MutualContact contact;           ///< That contact.
 

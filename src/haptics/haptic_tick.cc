@@ -32,21 +32,21 @@ TickOptions WithGuidance(TickOptions options) noexcept {
 
 }  // namespace
 
-HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene, HandRole role) noexcept
+HapticTick::HapticTick(const TickOptions& options, contact::Scene* scene, std::size_t hand) noexcept
     : options_(WithGuidance(options)),
       scene_(*scene),
       workspace_(options.workspace),
       force_map_(MakeForceMap(options.device)),
       coupling_(options_),
       guidance_(options_),
-      contacts_(options_, scene, &guidance_.mates(), role == HandRole::kFirst),
+      contacts_(options_, scene, &guidance_.mates(), hand),
       seating_(options_, &guidance_, &contacts_),
       output_(options_) {}
 
-void HapticTick::Take(const HeldPart* part, const HandExchange* other) noexcept {
+void HapticTick::Take(const HeldPart* part, std::span<const HandExchange> others) noexcept {
   HVAS_ASSERT(part->bodies.size() == 1 + part->members.size());
   const FreeBody* falling = contacts_.FindAwake(part->body);
-  if (falling == nullptr && other != nullptr) {
+  for (auto other = others.begin(); falling == nullptr && other != others.end(); ++other) {
     const auto found = std::find_if(other->awake.begin(), other->awake.end(),
                                     [part](const FreeBody& body) { return body.id == part->body; });
     falling = found != other->awake.end() ? &*found : nullptr;
@@ -80,13 +80,13 @@ void HapticTick::Take(const HeldPart* part, const HandExchange* other) noexcept 
 }
 
 // Until a mate has caught the part, it is for the place that it is nearest to.
-void HapticTick::ChoosePlace(const HandExchange* other) noexcept {
+void HapticTick::ChoosePlace(std::span<const HandExchange> others) noexcept {
   const HeldPart* now = displayed_.part;
   if (taken_->table_places.empty()) {
     return;
   }
   const bool is_there =
-      now->target == nullptr || contacts_.IsAtRestAt(*now->target, now->X_WT_target, other);
+      now->target == nullptr || contacts_.IsAtRestAt(*now->target, now->X_WT_target, others);
   const bool is_bound = state_ == HoldState::kSeated || seating_.leaves_place() ||
                         guidance_.mates().captured_count() > 0;
   if (is_there && is_bound) {
@@ -103,7 +103,7 @@ void HapticTick::ChoosePlace(const HandExchange* other) noexcept {
     constexpr double kStay = 0.8;  // Share of the distance to the present place: a choice.
     const double distance = (place.get() == now ? kStay : 1.0) * distance_to(*place);
     if (distance < std::min(least, place->target_range) &&
-        contacts_.IsAtRestAt(*place->target, place->X_WT_target, other)) {
+        contacts_.IsAtRestAt(*place->target, place->X_WT_target, others)) {
       nearest = place.get();
       least = distance;
     }
@@ -156,18 +156,18 @@ LetGo HapticTick::Drop() noexcept {
   return drop;
 }
 
-HandExchange HapticTick::Exchange() const noexcept {
+HandExchange HapticTick::Exchange(std::size_t to) const noexcept {
   HandExchange exchange;
   exchange.displayed = displayed_;
   exchange.held_still = displayed_.part != nullptr ? displayed_.part->target.get() : nullptr;
   exchange.hold = hold_;
   exchange.response = response_;
-  contacts_.FillExchange(&exchange);
+  contacts_.FillExchange(to, &exchange);
   return exchange;
 }
 
 TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext& context,
-                            const HandExchange* other) noexcept {
+                            std::span<const HandExchange> others) noexcept {
   TickOutput out;
   out.context = context;
   const bool is_usable = state.is_valid && spatial::IsFinite(state.X_DH) &&
@@ -178,17 +178,17 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     workspace_.Lose();
   }
   if (displayed_.part != nullptr) {
-    ChoosePlace(other);
+    ChoosePlace(others);
   }
   const HeldPart* part = displayed_.part;
-  contacts_.Begin(part, other);
+  contacts_.Begin(part, others);
   response_ = {};
   out.X_WH = hand_.X_WH;
   out.X_WT = hand_.X_WH;
   out.X_WD = hand_.X_WH;
   if (part != nullptr && is_usable) {
     out.X_WT = coupling_.Track(hand_, displayed_).X_WT;
-    Hold(other, &out);
+    Hold(!others.empty(), &out);
     // About the hand's point: the coupling acts at the centre of mass.
     out.F_H_W = out.F_felt_W;
     out.F_H_W.t += (out.X_WT * part->p_BoBcm_B - hand_.X_WH.p()).cross(out.F_felt_W.f);
@@ -198,7 +198,7 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   if (part != nullptr) {
     out.occurrence = part->occurrence;
     out.X_WD = displayed_.X_WD;
-    if (other != nullptr) {
+    if (!others.empty()) {
       contacts_.MoveInScene(*part, displayed_.X_WD);
     }
   }
@@ -250,10 +250,10 @@ double HapticTick::CalcStoredEnergy() const noexcept {
   return energy / options_.workspace.mapping.scale;
 }
 
-void HapticTick::Hold(const HandExchange* other, TickOutput* out) noexcept {
+void HapticTick::Hold(bool has_others, TickOutput* out) noexcept {
   soft_start_ = std::min(1.0, soft_start_ + options_.dt / kSoftStartTime);
   if (state_ != HoldState::kSeated) {
-    Step(other, out);
+    Step(has_others, out);
     return;
   }
   seating_.Advance(&displayed_);
@@ -266,7 +266,7 @@ void HapticTick::Hold(const HandExchange* other, TickOutput* out) noexcept {
   contacts_.StepFreeBodies(&solver_);
 }
 
-void HapticTick::Step(const HandExchange* other, TickOutput* out) noexcept {
+void HapticTick::Step(bool has_others, TickOutput* out) noexcept {
   const HeldPart& part = *displayed_.part;
   guidance_.Update(displayed_, coupling_.tracked().X_WT);
   const double virtual_mass = CalcVirtualMass(part, options_);
@@ -290,7 +290,7 @@ void HapticTick::Step(const HandExchange* other, TickOutput* out) noexcept {
       solver_.Solve(contacts_.effort().iterations, guidance_.mates().has_bores());
   contacts_.Finish(solver_);
   contacts_.MoveDisplayed(V, &displayed_);
-  if (other != nullptr) {
+  if (has_others) {
     RecordResponse(I_W, virtual_mass, V_before);
   }
   out->F_felt_W = coupling_.CalcWrench(displayed_);

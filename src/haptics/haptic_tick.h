@@ -32,25 +32,19 @@ struct LetGo {
   const RigidGroup* joined{nullptr};
 };
 
-/** Which hand this is, of one or two in a scene. */
-enum class HandRole : std::uint8_t {
-  kFirst,  ///< It ticks first, and solves the contact of the two held parts.
-  kSecond,
-};
-
 /** The haptic tick of one hand: X(1), X(2) coupling, contact on the displayed part (X7), guidance
  (X8..X10), fit (W5, W8, W9), weight and friction (X11), one force map (N4), gate (N6).
 
- One thread owns it. Take and Drop allocate nothing but must not run during Tick. Two hands in one
- scene tick in turn on the same thread, and each is given what the other gave after its last tick;
- what is held stays in the scene where it is displayed, and a loose part that moves belongs to the
+ One thread owns it. Take and Drop allocate nothing but must not run during Tick. The hands
+ of one scene, kMaxHands at most, tick in turn on the same thread, and each is given what the others
+ gave after their last ticks; what is held stays in the scene where it is displayed, and a loose part that moves belongs to the
  hand that woke it. */
 class HapticTick {
  public:
   /** @param scene  Bodies in the world; outlives this object. Free bodies and what is held are
-   moved in it. */
-  HapticTick(const TickOptions& options, contact::Scene* scene,
-             HandRole role = HandRole::kFirst) noexcept;
+   moved in it.
+   @param hand  Index of the hand among those of the scene, in the order in which they tick. */
+  HapticTick(const TickOptions& options, contact::Scene* scene, std::size_t hand = 0) noexcept;
   HapticTick(const HapticTick&) = delete;
   HapticTick& operator=(const HapticTick&) = delete;
 
@@ -84,8 +78,8 @@ class HapticTick {
    another hand, none of the part's bodies is loose for it any more: the caller tells it so
    afterwards.
    @param part   Outlives the hold.
-   @param other  What the other hand gave; null: there is one hand. RT-safe. */
-  void Take(const HeldPart* part, const HandExchange* other = nullptr) noexcept;
+   @param others  What the other hands gave. RT-safe. */
+  void Take(const HeldPart* part, std::span<const HandExchange> others = {}) noexcept;
 
   /** The held part has come into its place, in the product or on the table, or has not left it yet.
    */
@@ -101,12 +95,12 @@ class HapticTick {
   void SetEffort(const Effort& effort) noexcept { contacts_.SetEffort(effort); }
 
   /** One tick. Always returns a safe wrench.
-   @param other  What the other hand gave; null: there is one hand. RT-safe. */
+   @param others  What the other hands gave. RT-safe. */
   TickOutput Tick(const device::DeviceState& state, const TickContext& context = {},
-                  const HandExchange* other = nullptr) noexcept;
+                  std::span<const HandExchange> others = {}) noexcept;
 
-  /** What this hand gives the other one now. RT-safe. */
-  [[nodiscard]] HandExchange Exchange() const noexcept;
+  /** What this hand gives the hand of index `to` now. RT-safe. */
+  [[nodiscard]] HandExchange Exchange(std::size_t to) const noexcept;
 
   /** ContactStep::pressing(). */
   [[nodiscard]] std::span<const PressingContact> pressing() const noexcept {
@@ -120,14 +114,15 @@ class HapticTick {
   [[nodiscard]] const TickOptions& options() const noexcept { return options_; }
 
  private:
-  void ChoosePlace(const HandExchange* other) noexcept;
+  void ChoosePlace(std::span<const HandExchange> others) noexcept;
   void GoTo(const HeldPart& place) noexcept;
   /** Weight of a part as the hand feels it [N]. */
   [[nodiscard]] double CalcFeltWeight(const HeldPart& part) const noexcept;
   void CreditWeight() noexcept;
   [[nodiscard]] double CalcStoredEnergy() const noexcept;
-  void Hold(const HandExchange* other, TickOutput* out) noexcept;
-  void Step(const HandExchange* other, TickOutput* out) noexcept;
+  /** @param has_others  Whether the scene has other hands. */
+  void Hold(bool has_others, TickOutput* out) noexcept;
+  void Step(bool has_others, TickOutput* out) noexcept;
   void RecordResponse(const Mat3& I_W, double mass, const spatial::Twist& V_before) noexcept;
   void UpdateState() noexcept;
 

@@ -44,7 +44,7 @@ contact::QueryOptions Probe::MakeOptions() const {
   contact::QueryOptions options;
   options.ignored = problem_.ignored;
   options.allowances = problem_.allowances;
-  options.left_out = problem_.left_out;
+  std::copy(problem_.left_out.begin(), problem_.left_out.end(), options.left_out.begin());
   options.self = problem_.self;
   // No point is left out: a way that is free at some of its points is no way.
   options.point_budget = std::numeric_limits<std::uint32_t>::max() / 2;

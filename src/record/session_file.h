@@ -22,7 +22,7 @@ namespace hvas::record {
 using Meta = std::map<std::string, std::string>;
 
 inline constexpr std::int64_t kApplicationId = 0x48564153;  // "HVAS", in the file's header.
-// As many ticks are compressed together at most as two hands have between two transactions.
+// As many ticks are compressed together at most: those of two hands between two transactions.
 inline constexpr std::int64_t kChunkTicks = 1000;
 
 /** Keys that the recorder adds when it ends; a record without them was cut short. */

@@ -114,7 +114,6 @@ std::string MakeBeginningJson(const Beginning& beginning) {
 
 Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
   constexpr const char* kWhat = "The beginning of a stretch";
-  constexpr std::size_t kMostHands = 2;  // A simulation has so many.
   const Json json = Json::parse(text, nullptr, false);
   JsonFields fields(json);
   Beginning beginning;
@@ -133,7 +132,7 @@ Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count
     return Unexpected(parts.error());
   }
   beginning.parts = std::move(*parts);
-  if (beginning.hands.empty() || beginning.hands.size() > kMostHands) {
+  if (beginning.hands.empty() || beginning.hands.size() > haptics::kMaxHands) {
     return Refuse(kWhat, "hands");
   }
   if (beginning.parts.size() != part_count) {

@@ -10,7 +10,6 @@
 #include "base/clock.h"
 #include "record/packing.h"
 #include "session/command_json.h"
-#include "session/make_simulation.h"
 #include "session/session_recorder.h"
 #include "simulation/simulation.h"
 
@@ -137,7 +136,7 @@ class Replayer {
       hand.condition = options_.condition.value_or(hand.condition);
       hand.force_map = options_.force_map.value_or(hand.force_map);
     }
-    simulation_ = MakeSimulation(model_, beginning->hands);
+    simulation_ = std::make_unique<simulation::Simulation>(model_, beginning->hands);
     simulation_->Restore(beginning->parts);
     parts_ = std::move(beginning->parts);
     start_ns_ = command.t_ns;
@@ -228,7 +227,7 @@ class Replayer {
   std::vector<PartState> parts_;  ///< As the last command had them.
   std::int64_t start_ns_{0};
   std::int64_t period_ns_{0};
-  std::array<std::int64_t, 2> expected_ns_{};  ///< Of each hand's next tick.
+  std::array<std::int64_t, haptics::kMaxHands> expected_ns_{};  ///< Of each hand's next tick.
   std::uint32_t obeyed_{0};
   bool is_lost_{false};
 

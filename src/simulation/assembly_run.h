@@ -9,7 +9,7 @@
 namespace hvas::simulation {
 
 /** Has a model assembled, one part after the other in the order that was found, and keeps the
- account: by simulated persons, or by the user of the device. Two persons take turns. While one
+ account: by simulated persons, or by the user of the device. Several persons take turns. While one
  puts a part in, the other begins with the next one where their ways in are apart: neither stands
  in the other's way, whichever comes first. A real hand beside a simulated one does what it likes;
  what it puts in its place is done.

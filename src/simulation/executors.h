@@ -89,12 +89,14 @@ struct LoopStatus {
   bool is_memory_locked{false};
 };
 
+/** The operators, by hand; null beyond the hands of the simulation. */
+using Operators = std::array<Operator*, haptics::kMaxHands>;
+
 /** Runs the loops of a simulation until `is_done` says so or `limit_ns` of session time have
  passed. `advance` runs after every physics step, on its thread. */
 struct Execution {
   Simulation* simulation{nullptr};
-  Operator* hand{nullptr};
-  Operator* second_hand{nullptr};  ///< Operator of the second hand, where there are two.
+  Operators hands{};  ///< One for each hand of the simulation.
   Sink* sink{nullptr};
   std::function<void()> advance;
   std::function<bool()> is_done;

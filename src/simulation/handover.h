@@ -64,8 +64,8 @@ class Handover {
   std::atomic<std::uint64_t> lost_safety_events{0};  ///< Counted by the haptic loop.
 
  private:
-  /** Room in the ring for a taking and a letting go of each of two hands. */
-  static constexpr std::size_t kRoomForOwnership = 4;
+  /** Room in the ring for a taking and a letting go of each hand. */
+  static constexpr std::size_t kRoomForOwnership = 2 * haptics::kMaxHands;
 
   Ring<SimulationEvent> events_;  ///< Written by haptics, read by physics.
 };

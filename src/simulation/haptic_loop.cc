@@ -34,9 +34,9 @@ HapticLoop::HapticLoop(const Execution& execution, ExecutionReport* report)
       report_(report),
       period_ns_(CalcPeriod(*execution.simulation)),
       shedder_(period_ns_) {
-  hands_[0].person = execution.hand;
-  hands_[1].person = execution.second_hand;
-  for (std::size_t i = 0; i < hand_count(); ++i) {
+  for (std::size_t i = 0; i < hands_.size() && execution.hands[i] != nullptr; ++i) {
+    ++hand_count_;
+    hands_[i].person = execution.hands[i];
     haptics::TickOutput& last = hands_[i].last;
     last.workspace = haptics_.options(i).workspace.mapping;
     last.X_WH = last.workspace.X_WD;
@@ -63,7 +63,7 @@ OperatorInput HapticLoop::MakeInput(Hand* hand, std::int64_t t_ns,
 
 std::int64_t HapticLoop::Tick(std::int64_t wake_up_ns) noexcept {
   std::int64_t compute_ns = 0;
-  for (std::size_t i = 0; i < hand_count(); ++i) {
+  for (std::size_t i = 0; i < hand_count_; ++i) {
     compute_ns += TickHand(i, wake_up_ns);
   }
   report_->compute.Add(compute_ns);

@@ -41,10 +41,6 @@ class HapticLoop {
     std::uint32_t actions_before{0};
   };
 
-  [[nodiscard]] std::size_t hand_count() const noexcept {
-    return hands_[1].person != nullptr ? 2 : 1;
-  }
-
   [[nodiscard]] static OperatorInput MakeInput(Hand* hand, std::int64_t t_ns,
                                                std::int64_t period_ns) noexcept;
   /** Returns its compute time [ns]. */
@@ -56,7 +52,8 @@ class HapticLoop {
   ExecutionReport* report_;
   std::int64_t period_ns_;
   LoadShedder shedder_;
-  std::array<Hand, 2> hands_;
+  std::array<Hand, haptics::kMaxHands> hands_;
+  std::size_t hand_count_{0};  ///< Those with an operator; the others do not tick.
   std::int64_t t_ns_{0};
 };
 

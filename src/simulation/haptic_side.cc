@@ -30,13 +30,13 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeContactFaces(
 
 }  // namespace
 
-HapticSide::HapticSide(const Model& model, const haptics::TickOptions* options, std::size_t hands,
+HapticSide::HapticSide(const Model& model, const std::vector<haptics::TickOptions>& hands,
                        Handover* handover)
     : handover_(*handover) {
-  for (std::size_t i = 0; i < hands; ++i) {
-    hands_.emplace_back(i, options[i], &scene_);
+  for (const haptics::TickOptions& options : hands) {
+    hands_.emplace_back(hands_.size(), options, &scene_);
   }
-  const auto faces = MakeContactFaces(model, options->condition);
+  const auto faces = MakeContactFaces(model, hands.front().condition);
   for (const Body& body : model.bodies) {
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
     scene_.SetOffsets(id, faces[id.index()]);
@@ -83,8 +83,23 @@ void HapticSide::SetEffortLevel(int level) noexcept {
   }
 }
 
-HapticSide::Hand* HapticSide::FindOther(const Hand& hand) noexcept {
-  return hands_.size() == 2 ? &hands_[1 - hand.index] : nullptr;
+std::span<const haptics::HandExchange> HapticSide::ListExchanges(const Hand& to) noexcept {
+  std::size_t count = 0;
+  for (const Hand& hand : hands_) {
+    if (hand.index != to.index) {
+      exchanges_[count++] = hand.tick.Exchange(to.index);
+    }
+  }
+  return {exchanges_.data(), count};
+}
+
+template <typename Do>
+void HapticSide::ForOthers(const Hand& hand, Do act) noexcept {
+  for (Hand& other : hands_) {
+    if (other.index != hand.index) {
+      act(&other);
+    }
+  }
 }
 
 void HapticSide::Apply(const TickCommand& command, std::int64_t t_ns) noexcept {
@@ -100,18 +115,15 @@ void HapticSide::Apply(const TickCommand& command, std::int64_t t_ns) noexcept {
 
 void HapticSide::ApplyTake(const TickCommand& command, std::int64_t t_ns) noexcept {
   Hand& hand = hands_[command.hand];
-  if (Hand* other = FindOther(hand)) {
-    const haptics::HandExchange exchange = other->tick.Exchange();
-    hand.tick.Take(command.part, &exchange);
+  hand.tick.Take(command.part, ListExchanges(hand));
+  ForOthers(hand, [&command](Hand* other) {
     for (const contact::BodyId body : command.part->bodies) {
       other->tick.SetLoose(body, false);
     }
     if (command.part->left_behind != nullptr) {
       other->tick.Join(*command.part->left_behind);
     }
-  } else {
-    hand.tick.Take(command.part);
-  }
+  });
   hand.metrics = {};
   hand.metrics.t_taken_ns = t_ns;
   hand.last_contact_ns = t_ns;  // it is taken off what it lies on
@@ -132,12 +144,13 @@ void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
   const haptics::LetGo let_go = hand->tick.Drop();
   const haptics::RigidGroup* together =
       let_go.joined != nullptr || !let_go.is_falling ? let_go.joined : part.group.get();
-  Hand* other = FindOther(*hand);
-  if (other != nullptr && together != nullptr) {
-    other->tick.Join(*together);
-  } else if (other != nullptr && let_go.is_falling) {
-    other->tick.SetLoose(part.body, true);
-  }
+  ForOthers(*hand, [&](Hand* other) {
+    if (together != nullptr) {
+      other->tick.Join(*together);
+    } else if (let_go.is_falling) {
+      other->tick.SetLoose(part.body, true);
+    }
+  });
   hand->metrics.arrival = let_go.arrival.d_W.norm();
   hand->metrics.arrival_angle = let_go.arrival.angle;
   SimulationEvent event;
@@ -202,13 +215,7 @@ haptics::TickOutput HapticSide::RunTick(Hand* hand, const device::DeviceState& d
   if (hand->tick.held() != nullptr && device.is_valid && !device.is_gripping) {
     LetGo(hand, device.t_ns);
   }
-  haptics::TickOutput out;
-  if (Hand* other = FindOther(*hand)) {
-    const haptics::HandExchange exchange = other->tick.Exchange();
-    out = hand->tick.Tick(device, context, &exchange);
-  } else {
-    out = hand->tick.Tick(device, context);
-  }
+  const haptics::TickOutput out = hand->tick.Tick(device, context, ListExchanges(*hand));
   UpdateMetrics(hand, device.t_ns, out);
   ReportChanges(hand, device, out);
   HandReport report;

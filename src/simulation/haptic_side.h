@@ -19,7 +19,7 @@ namespace hvas::simulation {
 class HapticSide {
  public:
   /** @param handover  To and from the physics loop; outlives this object. */
-  HapticSide(const Model& model, const haptics::TickOptions* options, std::size_t hands,
+  HapticSide(const Model& model, const std::vector<haptics::TickOptions>& hands,
              Handover* handover);
 
   /** One tick of one hand: each hand once in a period, in their order. RT-safe. */
@@ -71,7 +71,7 @@ class HapticSide {
   struct Hand {
     Hand(std::size_t i, const haptics::TickOptions& options, contact::Scene* scene)
         : index(i),
-          tick(options, scene, i == 0 ? haptics::HandRole::kFirst : haptics::HandRole::kSecond) {}
+          tick(options, scene, i) {}
 
     const std::size_t index;
     haptics::HapticTick tick;
@@ -83,7 +83,11 @@ class HapticSide {
     std::array<std::int64_t, 32> last_action_ns{};  ///< When the gate last did it, by bit.
   };
 
-  [[nodiscard]] Hand* FindOther(const Hand& hand) noexcept;
+  /** What all other hands give a hand now; until the next call. */
+  [[nodiscard]] std::span<const haptics::HandExchange> ListExchanges(const Hand& to) noexcept;
+  /** Does something with each of the other hands. */
+  template <typename Do>
+  void ForOthers(const Hand& hand, Do act) noexcept;
   haptics::TickOutput RunTick(Hand* hand, const device::DeviceState& device,
                               const haptics::TickContext& context) noexcept;
   void ApplyTake(const TickCommand& command, std::int64_t t_ns) noexcept;
@@ -96,6 +100,7 @@ class HapticSide {
   Handover& handover_;
   contact::Scene scene_;
   std::deque<Hand> hands_;
+  std::array<haptics::HandExchange, haptics::kMaxHands - 1> exchanges_;
   TickLog* log_{nullptr};
   int effort_level_{0};
   int reported_effort_level_{0};

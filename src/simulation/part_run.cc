@@ -26,11 +26,10 @@ PartRun::PartRun(Simulation* simulation, Sink* downstream)
   }
 }
 
-Execution PartRun::MakeExecution(Operator* hand, double limit_s, Operator* second_hand) {
+Execution PartRun::MakeExecution(const Operators& hands, double limit_s) {
   Execution execution;
   execution.simulation = simulation_;
-  execution.hand = hand;
-  execution.second_hand = second_hand;
+  execution.hands = hands;
   execution.sink = this;
   execution.advance = [this] { Advance(); };
   execution.is_done = [this] { return is_done_; };

@@ -81,7 +81,7 @@ struct AssemblyProgress {
 };
 
 /** The simulated persons, by hand; null where a real one has that hand, or there is none. */
-using Persons = std::array<SimulatedPerson*, 2>;
+using Persons = std::array<SimulatedPerson*, haptics::kMaxHands>;
 
 /** A run of a simulation in which parts have their turn one after the other, with the results of
  each: the base of AssemblyRun and DisassemblyRun. As a Sink the run stands between the loops and
@@ -97,10 +97,13 @@ class PartRun : public Sink {
   void OnFlight(const std::vector<FlightTick>& ticks) override;
 
   /** Describes this run for an executor: advanced until it is done, with these in the hands.
-   @param limit_s  Of session time [s].
-   @param second_hand  Of a simulation with two; else null. */
-  [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s,
-                                        Operator* second_hand = nullptr);
+   @param limit_s  Of session time [s]. */
+  [[nodiscard]] Execution MakeExecution(const Operators& hands, double limit_s);
+
+  /** The same for a simulation with one hand. */
+  [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s) {
+    return MakeExecution(Operators{hand}, limit_s);
+  }
 
   /** Gives a worker who is free the next part. To be called after every physics step, on its
    * thread. */

@@ -13,20 +13,21 @@ constexpr double kReach = 0.03;  // [m] from a part's centre of mass, to take it
 
 }  // namespace
 
-PhysicsSide::PhysicsSide(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
-                         std::size_t hands, Handover* handover, TripleBuffer<Frame>* frames)
+PhysicsSide::PhysicsSide(std::shared_ptr<const Model> model,
+                         const std::vector<haptics::TickOptions>& hands, Handover* handover,
+                         TripleBuffer<Frame>* frames)
     : model_(std::move(model)),
       handover_(*handover),
       frames_(*frames),
       parts_(model_->bodies.size()),
       maker_(*model_, parts_),
-      hands_(hands) {
+      hands_(hands.size()) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     parts_[i].X_WB = model_->bodies[i].X_WB_start;
     parts_[i].placement = BeginningOf(model_->bodies[i].role);
   }
-  for (std::size_t i = 0; i < hands; ++i) {
-    hands_[i].reports_energy = options[i].controls_passivity;
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    hands_[i].reports_energy = hands[i].controls_passivity;
   }
 }
 

@@ -25,8 +25,8 @@ class PhysicsSide {
 
   /** @param handover  To and from the haptic loop.
    @param frames  For the publishing thread. Both outlive this object. */
-  PhysicsSide(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
-              std::size_t hands, Handover* handover, TripleBuffer<Frame>* frames);
+  PhysicsSide(std::shared_ptr<const Model> model, const std::vector<haptics::TickOptions>& hands,
+              Handover* handover, TripleBuffer<Frame>* frames);
 
   /** One step: taking up and letting go, where loose parts have come to. `sink` may be null. */
   void Step(Sink* sink);

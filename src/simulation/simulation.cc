@@ -1,7 +1,8 @@
 #include "simulation/simulation.h"
 
-#include <array>
 #include <utility>
+
+#include "base/check.h"
 
 namespace hvas::simulation {
 namespace {
@@ -19,19 +20,17 @@ Frame MakeFirstFrame(const Model& model, std::size_t hands) {
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options)
-    : Simulation(std::move(model), &options, 1) {}
+    : Simulation(std::move(model), std::vector{options}) {}
 
-Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& first,
-                       const haptics::TickOptions& second)
-    : Simulation(std::move(model), std::array{first, second}.data(), 2) {}
-
-Simulation::Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
-                       std::size_t hands)
+Simulation::Simulation(std::shared_ptr<const Model> model,
+                       const std::vector<haptics::TickOptions>& hands)
     : model_(std::move(model)),
-      handover_(model_->bodies.size(), hands),
-      frames_(MakeFirstFrame(*model_, hands)),
-      haptics_(*model_, options, hands, &handover_),
-      physics_(model_, options, hands, &handover_, &frames_) {}
+      handover_(model_->bodies.size(), hands.size()),
+      frames_(MakeFirstFrame(*model_, hands.size())),
+      haptics_(*model_, hands, &handover_),
+      physics_(model_, hands, &handover_, &frames_) {
+  HVAS_DEMAND(!hands.empty() && hands.size() <= haptics::kMaxHands);
+}
 
 const Frame& Simulation::Publish() {
   frames_.Update();

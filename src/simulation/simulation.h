@@ -20,9 +20,9 @@ namespace hvas::simulation {
  `haptics()`, the physics loop (100 Hz) `physics()`, and the publishing loop (30 Hz) Publish. Called
  in turn from one thread they give the same results every time.
 
- Two hands work in one scene. What one holds is an obstacle for the other, and cannot be taken by
- it; mates are those with parts that are in their place when a part is taken, not with what the
- other hand holds. A loose part that moves belongs to the hand whose part woke it. */
+ Up to haptics::kMaxHands hands work in one scene. What one holds is an obstacle for the others, and
+ cannot be taken by them; mates are those with parts that are in their place when a part is taken,
+ not with what another hand holds. A loose part that moves belongs to the hand whose part woke it. */
 class Simulation {
  public:
   // X4 asks for 100 Hz and 30 Hz.
@@ -31,9 +31,8 @@ class Simulation {
 
   Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& options);
 
-  /** Two hands, with the same dt. */
-  Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions& first,
-             const haptics::TickOptions& second);
+  /** @param hands  Options of each hand, with the same dt. @pre 1 to haptics::kMaxHands. */
+  Simulation(std::shared_ptr<const Model> model, const std::vector<haptics::TickOptions>& hands);
 
   /** What the haptic thread may use. */
   [[nodiscard]] HapticSide& haptics() noexcept { return haptics_; }
@@ -77,9 +76,6 @@ class Simulation {
   }
 
  private:
-  Simulation(std::shared_ptr<const Model> model, const haptics::TickOptions* options,
-             std::size_t hands);
-
   std::shared_ptr<const Model> model_;
   Handover handover_;
   TripleBuffer<Frame> frames_;

@@ -230,6 +230,25 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
                                            is_tls_ ? "; Secure" : "")};
 }
 
+bool Access::EndSharing(std::string_view cookie_header) {
+  const std::string secret = FindCookie(cookie_header, cookie_name_).value_or("");
+  const std::lock_guard lock(mutex_);
+  const SavedAccess::Link& own = known_.links[static_cast<std::size_t>(Role::kOperator)];
+  if (own.browser.empty() || !IsSameSecret(own.browser, secret)) {
+    return false;
+  }
+  std::erase_if(known_.browsers, [&secret](const SavedAccess::Browser& browser) {
+    return !IsSameSecret(browser.secret, secret);
+  });
+  known_.links.resize(kRoles.size());
+  for (const Role role : kRoles) {
+    if (role != Role::kOperator) {
+      known_.links[static_cast<std::size_t>(role)] = {MakeToken(), role, ""};
+    }
+  }
+  return true;
+}
+
 std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
   const std::string secret = FindCookie(cookie_header, cookie_name_).value_or("");
   const std::lock_guard lock(mutex_);

@@ -107,6 +107,11 @@ class Access {
    Errors: kNotFound when there is no such link; kInvalid when it has admitted another browser. */
   [[nodiscard]] Result<Admission> Admit(std::string_view token, std::string_view cookie_header);
 
+  /** Takes the right to come in from all browsers but that of the first operator's link, and makes
+   new links in place of all others. @returns whether the browser with this Cookie header is that
+   one; nothing is changed otherwise. */
+  [[nodiscard]] bool EndSharing(std::string_view cookie_header);
+
   /** Finds the role of a browser by its Cookie header; none without a valid session. */
   [[nodiscard]] std::optional<Role> RoleOfCookie(std::string_view cookie_header) const;
 

@@ -77,6 +77,10 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::MeasureCommand>(&Hub::DoMeasure),
       Entry<protocol::PathCommand>(&Hub::DoPath),
       Entry<protocol::LeaseCommand>(&Hub::DoLease),
+      Entry<protocol::IntroduceCommand>(&Hub::DoIntroduce),
+      Entry<protocol::LookCommand>(&Hub::DoLook),
+      Entry<protocol::AddNoteCommand>(&Hub::DoAddNote),
+      Entry<protocol::RemoveNoteCommand>(&Hub::DoRemoveNote),
       Entry<protocol::StatusCommand>(&Hub::DoStatus),
       Entry<protocol::StudyCommand>(&Hub::DoStudy),
   };
@@ -243,12 +247,13 @@ Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size
 
 Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& command) {
   using protocol::LeaseAction;
-  const std::vector<std::size_t> hands =
-      command.hand ? std::vector<std::size_t>{*command.hand} : std::vector<std::size_t>{0, 1};
   if (command.action == LeaseAction::kRequest) {
-    return RequestLease(caller, hands);
+    return RequestLease(
+        caller, command.hand ? std::vector<std::size_t>{*command.hand} : ListHandsInControl());
   }
   const std::vector<std::size_t> own = HandsOf(caller.id);
+  const std::vector<std::size_t> hands =
+      command.hand ? std::vector<std::size_t>{*command.hand} : own;
   std::vector<std::size_t> given;
   std::set_intersection(own.begin(), own.end(), hands.begin(), hands.end(),
                         std::back_inserter(given));
@@ -268,6 +273,39 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
   }
   GiveLease(given, to);
   return Json::object();
+}
+
+Result<Json> Hub::DoIntroduce(const Caller& caller, const protocol::IntroduceCommand& command) {
+  clients_[caller.id].name = MakeOneLine(command.name);
+  BroadcastRoles();
+  return Json::object();
+}
+
+Result<Json> Hub::DoLook(const Caller& caller, const protocol::LookCommand& command) {
+  const Json looking{{"event", "looking"},
+                     {"client", caller.id},
+                     {"eye_m", ToJson(command.eye)},
+                     {"target_m", ToJson(command.target)},
+                     {"p_m", command.p ? ToJson(*command.p) : Json(nullptr)}};
+  const std::string text = looking.dump();
+  for (const auto& [id, client] : clients_) {
+    if (id != caller.id) {
+      SendTo(client, looking, text);
+    }
+  }
+  return Json::object();
+}
+
+Result<Json> Hub::DoAddNote(const Caller& caller, const protocol::AddNoteCommand& command) {
+  const std::string& name = clients_[caller.id].name;
+  const auto id =
+      workbench_->notes().Add({name.empty() ? caller.id : name, command.text,
+                               product::OccurrenceId(command.occurrence), command.p_B});
+  return id ? Result<Json>(Json{{"note", *id}}) : Result<Json>(Unexpected(id.error()));
+}
+
+Result<Json> Hub::DoRemoveNote(const protocol::RemoveNoteCommand& command) {
+  return Done(workbench_->notes().Remove(command.note));
 }
 
 Result<Json> Hub::DoStatus() {

@@ -92,7 +92,7 @@ std::size_t HandRack::count() const {
 }
 
 void HandRack::SetCount(std::size_t count) {
-  HVAS_DEMAND(count == 1 || count == kMaxHands);
+  HVAS_DEMAND(count >= 1 && count <= kMaxHands);
   std::vector<Slot> closed;  // destroyed after the lock is released: closing takes time
   const std::lock_guard lock(mutex_);
   while (slots_.size() > count) {
@@ -109,11 +109,11 @@ Result<void> HandRack::Use(std::size_t hand, const std::string& address, double 
     const std::lock_guard lock(mutex_);
     if (hand >= slots_.size()) {
       return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                  "switch to two hands first");
+                  "add a hand first");
     }
     for (std::size_t i = 0; i < slots_.size() && address != kPointer; ++i) {
       if (slots_[i].address == address && i != hand) {
-        return Fail(ErrorCode::kInvalid, "the other hand uses this device", address,
+        return Fail(ErrorCode::kInvalid, "another hand uses this device", address,
                     "choose another device for that hand first");
       }
     }

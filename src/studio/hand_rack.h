@@ -16,18 +16,18 @@ namespace hvas::studio {
 class HandRack {
  public:
   static constexpr const char* kPointer = "pointer";  ///< Address for a hand without a device.
-  static constexpr std::size_t kMaxHands = 2;         ///< Hands of a simulation.
+  static constexpr std::size_t kMaxHands = haptics::kMaxHands;
 
   [[nodiscard]] std::size_t count() const;
 
-  /** Sets the number of hands; closes the device of a hand that is removed. @pre 1 or
-   kMaxHands. */
+  /** Sets the number of hands; closes the devices of hands that are removed. @pre 1 to kMaxHands.
+   */
   void SetCount(std::size_t count);
 
   /** Assigns a device to a hand in place of its present one; a device that it has already stays
    open.
    @param scale  As in simulation::RenderOptions.
-   Errors: kInvalid where there is no such hand or the other hand has the device; the driver's. */
+   Errors: kInvalid where there is no such hand or another hand has the device; the driver's. */
   [[nodiscard]] Result<void> Use(std::size_t hand, const std::string& address, double scale);
 
   /** Setups, indexed by hand. */

@@ -178,6 +178,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       }
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(role);
+    } else if (path == "/api/end_sharing" && method == http::verb::post) {
+      ReadJson(&HttpSession::EndSharing);
     } else if (path == "/api/link" && method == http::verb::post) {
       if (role != Role::kOperator) {
         Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
@@ -261,6 +263,19 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                                 {"origins", std::move(origins)},
                                 {"is_local", asio::ip::make_address(options.address).is_loopback()},
                                 {"reachable", options.reachable}});
+  }
+
+  /** All others have to leave, and their links are void. */
+  void EndSharing(const Json& /*body*/) {
+    if (!shared_->access->EndSharing(cookie_)) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid, "only the user who started this studio can end the sharing",
+                     "", "ask that user, or close this page to leave"});
+    }
+    shared_->SaveAccessState();
+    shared_->UpdateParticipantLink();
+    shared_->hub.CloseRevoked();
+    SendJson(http::status::ok, Json::object());
   }
 
   void ReadUpload(Role role) {

@@ -77,7 +77,13 @@ void Hub::Leave(const std::string& id) {
 Json Hub::MakeHello(const std::string& id, const Client& client) const {
   Json examples = Json::array();
   for (const Example& example : desk_ == nullptr ? examples_ : std::vector<Example>()) {
-    examples.push_back({{"id", example.id}, {"name", example.name}, {"about", example.about}});
+    // Where the user's own files lie is nobody else's business.
+    if (client.role == Role::kOperator || !example.is_recent) {
+      examples.push_back({{"id", example.id},
+                          {"name", example.name},
+                          {"about", example.about},
+                          {"is_recent", example.is_recent}});
+    }
   }
   return {
       {"event", "hello"},
@@ -165,6 +171,7 @@ Json Hub::MakeRoles() const {
   Json clients = Json::array();
   for (const auto& [id, client] : clients_) {
     clients.push_back({{"id", id},
+                       {"name", client.name},
                        {"role", ToString(client.role)},
                        {"has_lease", leases_[0] == id},
                        {"hands", HandsOf(id)}});
@@ -200,6 +207,24 @@ std::vector<std::size_t> Hub::HandsOf(const std::string& id) const {
     }
   }
   return hands;
+}
+
+std::vector<std::size_t> Hub::ListHandsInControl() const {
+  std::vector<std::size_t> hands;
+  for (std::size_t hand = 0; hand < leases_.size(); ++hand) {
+    if (leases_[hand].empty() || leases_[hand] == leases_[0]) {
+      hands.push_back(hand);
+    }
+  }
+  return hands;
+}
+
+void Hub::CloseRevoked() {
+  for (auto& [id, client] : clients_) {
+    if (!client.link->is_admitted()) {
+      client.link->Close("the user who shared this studio has ended the sharing");
+    }
+  }
 }
 
 bool Hub::MaySend(Client* client, std::int64_t now_ns) const {

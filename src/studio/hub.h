@@ -29,12 +29,15 @@ class ClientLink {
   virtual void SendText(std::string text) = 0;
   virtual void SendFrames(std::string bytes) = 0;
   virtual void Close(const std::string& reason) = 0;
+  /** Whether the client's browser may still come in; a link may have been revoked. */
+  [[nodiscard]] virtual bool is_admitted() const { return true; }
 };
 
-/** An example product that comes with the program. */
+/** A product that the start page offers. */
 struct Example {
   std::string id, name, about;
   std::filesystem::path file;
+  bool is_recent{false};  ///< It was opened before, and does not come with the program.
 };
 
 /** The clients of one workbench: their leases on hands, the commands and inputs that they send, and
@@ -62,6 +65,9 @@ class Hub {
   [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
   void Leave(const std::string& id);
 
+  /** Closes the connections of clients whose browsers may not come in any more. */
+  void CloseRevoked();
+
   /** Removes all clients without notice, when the server ends. */
   void DropClients() { clients_.clear(); }
 
@@ -87,6 +93,7 @@ class Hub {
  private:
   struct Client {
     Role role{Role::kViewer};
+    std::string name;  ///< That its user has given; empty: none.
     ClientLink* link{nullptr};
     std::uint32_t sent_seq{0};
     std::uint32_t seen_seq{0};
@@ -154,6 +161,10 @@ class Hub {
   Result<Json> DoMeasure(const protocol::MeasureCommand& command);
   Result<Json> DoPath(const Caller& caller, const protocol::PathCommand& command);
   Result<Json> DoLease(const Caller& caller, const protocol::LeaseCommand& command);
+  Result<Json> DoIntroduce(const Caller& caller, const protocol::IntroduceCommand& command);
+  Result<Json> DoLook(const Caller& caller, const protocol::LookCommand& command);
+  Result<Json> DoAddNote(const Caller& caller, const protocol::AddNoteCommand& command);
+  Result<Json> DoRemoveNote(const protocol::RemoveNoteCommand& command);
   Result<Json> DoStatus();
   Result<Json> DoStudy(const Caller& caller, const protocol::StudyCommand& command);
 
@@ -167,6 +178,8 @@ class Hub {
   /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */
   void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
   [[nodiscard]] std::vector<std::size_t> HandsOf(const std::string& id) const;
+  /** What a request without a hand is for: the hands of who leads hand 0, and those of nobody. */
+  [[nodiscard]] std::vector<std::size_t> ListHandsInControl() const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;

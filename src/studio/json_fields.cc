@@ -1,5 +1,6 @@
 #include "studio/json_fields.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -110,7 +111,7 @@ Result<std::vector<product::OccurrenceId>> OccurrencesAt(const Json& object, con
 Result<std::size_t> HandAt(const Json& object, const char* name) {
   const auto hand = IndexAt(object, name);
   if (!hand || *hand >= HandRack::kMaxHands) {
-    return FailField(name, "0 or 1");
+    return FailField(name, fmt::format("0 to {}", HandRack::kMaxHands - 1).c_str());
   }
   return *hand;
 }
@@ -123,6 +124,19 @@ Result<double> NumberAt(const Json& object, const char* name, const Limits& limi
     return FailField(name, fmt::format("a number of {} to {}", limits.low, limits.high).c_str());
   }
   return number;
+}
+
+Result<Vec3> Vec3At(const Json& object, const char* name) {
+  constexpr double kFarthest = 1e6;  // [m], and of directions: a choice.
+  const Json* field = FieldOf(object, name);
+  Vec3 v = Vec3::Zero();
+  bool is_good = field != nullptr && field->is_array() && field->size() == 3;
+  for (std::size_t i = 0; is_good && i < 3; ++i) {
+    const Json& number = (*field)[i];
+    is_good = number.is_number() && std::abs(number.get<double>()) <= kFarthest;
+    v[static_cast<Eigen::Index>(i)] = is_good ? number.get<double>() : 0;
+  }
+  return is_good ? Result<Vec3>(v) : Result<Vec3>(FailField(name, "three numbers"));
 }
 
 Result<PickedFace> FaceAt(const Json& object, const char* name) {

@@ -57,6 +57,8 @@ struct Limits {
 
 /** Reads a number within limits. */
 [[nodiscard]] Result<double> NumberAt(const Json& object, const char* name, const Limits& limits);
+/** A point or a direction: three numbers of at most 1e6 by size. */
+[[nodiscard]] Result<Vec3> Vec3At(const Json& object, const char* name);
 [[nodiscard]] Result<PickedFace> FaceAt(const Json& object, const char* name);
 /** A whole number, a text, or null for none. */
 [[nodiscard]] Result<study::AnswerValue> AnswerAt(const Json& object, const char* name);

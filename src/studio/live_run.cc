@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "session/make_simulation.h"
 #include "studio/next_step.h"
 
 namespace hvas::studio {
@@ -41,11 +40,26 @@ std::vector<haptics::TickOptions> TicksOf(const std::vector<std::unique_ptr<Live
 }
 
 simulation::Persons PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
-  return {hands.front()->person(), hands.size() == 1 ? nullptr : hands.back()->person()};
+  simulation::Persons persons{};
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    persons[i] = hands[i]->person();
+  }
+  return persons;
 }
 
-PeakForces TakePeaks(std::array<std::atomic<double>, 2>* peaks) {
-  return {(*peaks)[0].exchange(0), (*peaks)[1].exchange(0)};
+simulation::Operators OperatorsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  simulation::Operators operators{};
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    operators[i] = hands[i]->active();
+  }
+  return operators;
+}
+
+PeakForces TakePeaks(std::array<std::atomic<double>, haptics::kMaxHands>* peaks) {
+  PeakForces taken;
+  std::transform(peaks->begin(), peaks->end(), taken.begin(),
+                 [](std::atomic<double>& peak) { return peak.exchange(0); });
+  return taken;
 }
 
 bool IsHeld(const simulation::PartState& part) {
@@ -70,7 +84,7 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
       recording_(options.recording),
       trial_(options.trial),
       hands_(MakeHands(options, *model)),
-      simulation_(session::MakeSimulation(std::move(model), TicksOf(hands_))),
+      simulation_(std::make_unique<simulation::Simulation>(std::move(model), TicksOf(hands_))),
       assembly_(simulation_.get(), PersonsOf(hands_), this),
       plan_(options.disassembly),
       begin_ns_(MonotonicNs()) {
@@ -115,8 +129,7 @@ LiveRun::~LiveRun() {
 
 void LiveRun::Run(const LiveOptions& options) {
   simulation::FlightRecorder flight(options.rate_hz, hands_.size());
-  simulation::Execution execution = part_run().MakeExecution(
-      hands_.front()->active(), kForEver, hands_.size() == 1 ? nullptr : hands_.back()->active());
+  simulation::Execution execution = part_run().MakeExecution(OperatorsOf(hands_), kForEver);
   execution.advance = [this] { Advance(); };
   execution.is_done = [this] { return is_stopping_.load(); };
   execution.flight = &flight;

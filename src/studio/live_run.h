@@ -43,7 +43,7 @@ struct LiveListeners {
 
 struct LiveOptions {
   bool has_person{false};           ///< See HandPurpose.
-  std::vector<HandSetup> hands{1};  ///< One or two.
+  std::vector<HandSetup> hands{1};  ///< One to haptics::kMaxHands.
   std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
   haptics::PaperGuidance guidance;  ///< See HandPurpose.
@@ -122,7 +122,7 @@ class LiveRun final : private simulation::Sink {
   std::shared_ptr<const simulation::DisassemblyPlan> plan_;
   std::optional<simulation::DisassemblyRun> disassembly_;  ///< Takes the place of assembly_.
   TripleBuffer<simulation::LoopStatus> status_;
-  std::array<std::atomic<double>, 2> peak_felt_{};
+  std::array<std::atomic<double>, haptics::kMaxHands> peak_felt_{};
   /** MonotonicNs() at session time 0, by the newest tick: periods that the loop missed are no
    session time, so that it moves. */
   std::atomic<std::int64_t> begin_ns_;
@@ -133,7 +133,7 @@ class LiveRun final : private simulation::Sink {
   std::vector<std::function<void()>> tasks_;
   LiveState observed_;
   LiveState before_take_;
-  std::array<bool, 2> is_holding_{};  ///< Indexed by hand.
+  std::array<bool, haptics::kMaxHands> is_holding_{};  ///< Indexed by hand.
 
   std::thread thread_;
 };

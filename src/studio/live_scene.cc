@@ -26,9 +26,9 @@ Json MakePlacementEvent(std::size_t occurrence, const simulation::PartState& par
   return event;
 }
 
-std::array<double, 2> CalcHandSpeeds(const simulation::Frame& before,
+std::array<double, haptics::kMaxHands> CalcHandSpeeds(const simulation::Frame& before,
                                      const simulation::Frame& after) {
-  std::array<double, 2> speeds{};
+  std::array<double, haptics::kMaxHands> speeds{};
   const double elapsed = 1e-9 * static_cast<double>(after.t_ns - before.t_ns);
   for (std::size_t i = 0; i < after.ticks.size(); ++i) {
     if (i < before.ticks.size() && elapsed > 0) {

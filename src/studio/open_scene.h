@@ -30,7 +30,7 @@ struct OpenScene {
 };
 
 /** Largest force since the previous query, by hand [N]. */
-using PeakForces = std::array<double, 2>;
+using PeakForces = std::array<double, haptics::kMaxHands>;
 
 /** The newest state of everything that moves. */
 struct LiveFrame {
@@ -39,7 +39,7 @@ struct LiveFrame {
   simulation::Frame frame;
   std::int64_t clock_ns{0};            ///< MonotonicNs() at its tick.
   PeakForces peak_felt{};              ///< Largest since the previous frame, by hand [N].
-  std::array<double, 2> hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
+  std::array<double, haptics::kMaxHands> hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
 };
 
 }  // namespace hvas::studio

@@ -14,8 +14,8 @@ namespace hvas::studio {
 namespace {
 
 /** Events that a page needs to play the session. */
-constexpr std::array<std::string_view, 8> kClientEvents{"taken", "state",  "dropped", "placement",
-                                                        "step",  "safety", "device",  "demo"};
+constexpr std::array<std::string_view, 9> kClientEvents{
+    "taken", "state", "dropped", "placement", "step", "safety", "device", "demo", "notes"};
 
 std::vector<std::byte> BytesOf(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
@@ -40,7 +40,7 @@ Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path&
   record::RecorderOptions options;
   options.path = file;
   options.is_threaded = true;
-  options.ring_ticks *= 2;  // ticks of two hands
+  options.ring_ticks *= 2;  // Eight seconds of two hands, two of eight.
   options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
   auto recorder = assembly::MakeRecorder(*scene->model, options, {{kNameMeta, name}});
   if (!recorder) {

@@ -48,7 +48,7 @@ std::string CalcProductDigest(const product::Product& product) {
 
 SavedWork MakeSavedWork(const SceneSnapshot& now) {
   HVAS_DEMAND(now.scene != nullptr);
-  return {now.scene->file, now.scene->name, now.scene->digest, now.scene->edits, now.state};
+  return {now.scene->file, now.scene->name, now.scene->digest, now.scene->edits, now.state, {}};
 }
 
 Result<SavedWork> LoadWork(const std::filesystem::path& file) {
@@ -70,6 +70,9 @@ Result<SavedWork> LoadWork(const std::filesystem::path& file) {
   work.digest = TextOr(json, "digest", "");
   work.state.next_step = IndexOr(json, "next_step", 0);
   work.edits = list_at("edits").get<std::vector<Json>>();
+  if (const Json notes = list_at("notes"); !notes.is_null()) {
+    work.notes = notes.get<std::vector<Json>>();
+  }
   auto parts = session::ParseParts(list_at("parts"));
   const auto is_held = [](const PartState& part) { return part.placement == Placement::kHeld; };
   if (!parts || std::any_of(parts->begin(), parts->end(), is_held)) {
@@ -91,7 +94,8 @@ Result<void> SaveWork(const std::filesystem::path& file, const SavedWork& work) 
                   {"digest", work.digest},
                   {"next_step", work.state.next_step},
                   {"edits", work.edits},
-                  {"parts", session::MakePartsJson(work.state.parts)}};
+                  {"parts", session::MakePartsJson(work.state.parts)},
+                  {"notes", work.notes}};
   return WriteAtomically(file, json.dump(-1, ' ', false, Json::error_handler_t::replace),
                          FileReaders::kOwner);
 }

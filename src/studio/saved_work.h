@@ -16,6 +16,7 @@ struct SavedWork {
   std::string digest;          ///< CalcProductDigest of the product as opened.
   std::vector<Json> edits;     ///< Commands of edits, in order.
   LiveState state;
+  std::vector<Json> notes;  ///< As in the event "notes".
 };
 
 /** Computes the digest of parts, meshes, mates and fits: all that edits and poses refer to. */

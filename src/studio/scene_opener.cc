@@ -127,6 +127,9 @@ void SceneOpener::DoOpen(const std::filesystem::path& file, const std::string& n
     parts_.saver->BackUp();
   }
   Show(begun);
+  if (kept != nullptr && !begun.state.parts.empty()) {
+    parts_.notes->Restore(kept->notes);
+  }
   if (!resumed.is_null()) {
     parts_.events->Publish(resumed);
   }

@@ -19,6 +19,7 @@
 #include "studio/scene_observer.h"
 #include "studio/work_saver.h"
 #include "studio/workbench_edits.h"
+#include "studio/workbench_notes.h"
 
 namespace hvas::studio {
 
@@ -32,6 +33,7 @@ class SceneOpener final : public SceneObserver {
     SceneBuilder* builder{nullptr};
     LiveScene* live{nullptr};
     WorkbenchEdits* edits{nullptr};
+    WorkbenchNotes* notes{nullptr};
     PathLog* paths{nullptr};
     WorkSaver* saver{nullptr};
     EventBus* events{nullptr};

@@ -24,6 +24,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   ~SocketSession() override { Leave(); }
 
   void Run(const http::request<http::empty_body>& request) {
+    cookie_ = std::string(request[http::field::cookie]);
     // A silent peer gets a ping after half of this time, and is disconnected at its end.
     const auto patience = shared_->options.patience;
     socket_.set_option(websocket::stream_base::timeout{patience, patience, true});
@@ -42,6 +43,10 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
       return;
     }
     Push({std::move(text), true});
+  }
+
+  [[nodiscard]] bool is_admitted() const override {
+    return shared_->access->RoleOfCookie(cookie_).has_value();
   }
 
   void SendFrames(std::string bytes) override { Push({std::move(bytes), false}); }
@@ -144,6 +149,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   websocket::stream<Connection, /*deflateSupported=*/false> socket_;
   std::shared_ptr<ServerShared> shared_;
   Role role_;
+  std::string cookie_;  ///< Cookie header of the browser.
   std::string id_;
   beast::flat_buffer buffer_;
   std::deque<Message> queue_;

@@ -7,9 +7,8 @@
 
 namespace hvas::studio {
 
-WorkSaver::WorkSaver(std::filesystem::path file, const LiveScene* live,
-                     const WorkbenchTrials* trials, const EventBus* events)
-    : file_(std::move(file)), live_(live), trials_(trials), events_(events) {}
+WorkSaver::WorkSaver(std::filesystem::path file, const Sources& sources, const EventBus* events)
+    : file_(std::move(file)), sources_(sources), events_(events) {}
 
 void WorkSaver::BackUp() const {
   BackUpWork(file_);
@@ -33,12 +32,14 @@ void WorkSaver::ScheduleSave() {
 }
 
 void WorkSaver::Save() {
-  const SceneSnapshot now = live_->MakeRestingSnapshot();
-  if (file_.empty() || now.scene == nullptr || trials_->trial() != nullptr ||
+  const SceneSnapshot now = sources_.live->MakeRestingSnapshot();
+  if (file_.empty() || now.scene == nullptr || sources_.trials->trial() != nullptr ||
       simulation::CountPending(*now.scene->model) > 0) {
     return;
   }
-  const auto saved = SaveWork(file_, MakeSavedWork(now));
+  SavedWork work = MakeSavedWork(now);
+  work.notes = sources_.notes->List();
+  const auto saved = SaveWork(file_, work);
   if (!saved && std::exchange(can_save_, false)) {
     events_->Publish(
         {{"event", "failed"}, {"file", now.scene->name}, {"error", ToJson(saved.error())}});

@@ -6,6 +6,7 @@
 #include "studio/event_bus.h"
 #include "studio/live_scene.h"
 #include "studio/scene_observer.h"
+#include "studio/workbench_notes.h"
 #include "studio/workbench_trials.h"
 
 namespace hvas::studio {
@@ -14,12 +15,21 @@ namespace hvas::studio {
  of its own. Stop() and BackUp() are each for one thread at a time. */
 class WorkSaver final : public SceneObserver {
  public:
+  /** What is saved: the state of a scene with its notes, except in trials. */
+  struct Sources {
+    const LiveScene* live{nullptr};
+    const WorkbenchTrials* trials{nullptr};
+    const WorkbenchNotes* notes{nullptr};
+  };
+
   /** @param file  File of SavedWork; empty: nothing is saved. */
-  WorkSaver(std::filesystem::path file, const LiveScene* live, const WorkbenchTrials* trials,
-            const EventBus* events);
+  WorkSaver(std::filesystem::path file, const Sources& sources, const EventBus* events);
 
   /** Moves the saved work to a backup file, as the work on another product follows. */
   void BackUp() const;
+
+  /** Schedules a save of the work in its state at that time. */
+  void ScheduleSave();
 
   /** Saves the work a last time, and ends the thread; does nothing when it is called again. */
   void Stop();
@@ -30,14 +40,11 @@ class WorkSaver final : public SceneObserver {
   void OnPlacement() override { ScheduleSave(); }
 
   void OnStep(const OpenScene& scene, std::size_t step, bool has_person) override;
-  /** Schedules a save of the work in its state at that time. */
-  void ScheduleSave();
   /** Reports by the event "failed" when writing fails for the first time. */
   void Save();
 
   const std::filesystem::path file_;
-  const LiveScene* const live_;
-  const WorkbenchTrials* const trials_;
+  const Sources sources_;
   const EventBus* const events_;
   bool can_save_{true};  ///< False once writing has failed; used by one thread at a time.
   bool has_stopped_{false};

@@ -16,6 +16,7 @@
 #include "studio/workbench_demo.h"
 #include "studio/workbench_edits.h"
 #include "studio/workbench_hands.h"
+#include "studio/workbench_notes.h"
 #include "studio/workbench_orders.h"
 #include "studio/workbench_recordings.h"
 #include "studio/workbench_trials.h"
@@ -60,6 +61,8 @@ class Workbench : private SceneObserver {
 
   [[nodiscard]] WorkbenchHands& hands() { return hands_; }
 
+  [[nodiscard]] WorkbenchNotes& notes() { return notes_; }
+
   [[nodiscard]] WorkbenchEdits& edits() { return edits_; }
 
   [[nodiscard]] WorkbenchDemo& demo() { return demo_; }
@@ -84,6 +87,7 @@ class Workbench : private SceneObserver {
   SceneBuilder builder_;  ///< Used by the worker thread only.
   LiveScene live_;
   WorkbenchHands hands_;
+  WorkbenchNotes notes_;
   WorkbenchEdits edits_;
   WorkbenchDemo demo_;
   WorkbenchOrders orders_;

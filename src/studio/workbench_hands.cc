@@ -66,7 +66,7 @@ Result<std::shared_ptr<LiveRun>> WorkbenchHands::FindRun(std::size_t hand) const
   }
   if (hand >= (*run)->hand_count()) {
     return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
-                "switch to two hands first");
+                "add a hand first");
   }
   if (!(*run)->hand(hand).follows_pointer()) {
     return Fail(ErrorCode::kInvalid, "a device moves this hand", fmt::format("hand {}", hand),
@@ -141,8 +141,10 @@ Result<void> WorkbenchHands::HandOver(std::size_t from, std::size_t to) {
 }
 
 Result<void> WorkbenchHands::SetCount(std::size_t count) {
-  if (count != 1 && count != HandRack::kMaxHands) {
-    return Fail(ErrorCode::kInvalid, "the number of hands has to be 1 or 2", "count", "");
+  if (count < 1 || count > HandRack::kMaxHands) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("the number of hands has to be 1 to {}", HandRack::kMaxHands), "count",
+                "");
   }
   auto possible = CheckChange();
   if (possible) {
@@ -189,7 +191,7 @@ void WorkbenchHands::Restart() {
 
 void WorkbenchHands::SearchDevices() {
   if (device_search_.Begin()) {
-    worker_->Post([this](const std::stop_token& /*stop*/) {
+    search_thread_.Post([this](const std::stop_token& /*stop*/) {
       device_search_.Run();
       Json event = DescribeDevices();
       event["event"] = "devices";

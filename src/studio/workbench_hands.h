@@ -45,15 +45,19 @@ class WorkbenchHands final : public SceneObserver {
    the second one holds something, or either has a device, whose grip is its user's. */
   [[nodiscard]] Result<void> HandOver(std::size_t from, std::size_t to);
 
-  /** Sets the number of hands: 1 or 2. Reports by the event "hands". */
+  /** Sets the number of hands: 1 to HandRack::kMaxHands. Reports by the event "hands". */
   [[nodiscard]] Result<void> SetCount(std::size_t count);
 
   /** Assigns a device, or HandRack::kPointer, to a hand. Reports by the event "hands" or
    "failed". */
   [[nodiscard]] Result<void> UseDevice(std::size_t hand, const std::string& address, double scale);
 
-  /** Searches for devices. Reports by the event "devices". */
+  /** Searches for devices, on a thread of its own: a product is opened meanwhile. Reports by the
+   event "devices". */
   void SearchDevices();
+
+  /** Ends the search; does nothing when it is called again. */
+  void Stop() { search_thread_.Stop(); }
 
   /** Makes the field "devices" of docs/protocol.md. */
   [[nodiscard]] Json DescribeDevices() const { return device_search_.Describe(); }
@@ -82,6 +86,7 @@ class WorkbenchHands final : public SceneObserver {
   /** The rack has been changed, and the run with the devices before has not ended. */
   std::atomic<bool> is_changing_{false};
   DeviceSearch device_search_;
+  JobThread search_thread_;  ///< Last member, so that it ends before the others are destroyed.
 };
 
 }  // namespace hvas::studio

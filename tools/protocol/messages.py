@@ -8,6 +8,7 @@ PRIMITIVES = {"text": "string", "flag": "boolean", "number": "number", "whole": 
 CPP = {"text": ("std::string", "TextAt"), "flag": ("bool", "FlagAt"), "index": ("std::uint32_t", "IndexAt"),
        "index[]": ("std::vector<product::OccurrenceId>", "OccurrencesAt"),
        "hand": ("std::size_t", "HandAt"), "number": ("double", "NumberAt"), "FaceOf": ("PickedFace", "FaceAt"),
+       "Vec3": ("Vec3", "Vec3At"),
        "AnswerValue": ("study::AnswerValue", "AnswerAt")}
 RIGHTS = {"lease": "kLease", "hand": "kHand", "operator": "kOperator", "anybody": "kAnybody"}
 MARKS = ("<!-- {} of protocol.json -->", "<!-- end of {} -->")

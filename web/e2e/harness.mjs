@@ -52,6 +52,7 @@ export async function startStudio(args = [], { home = makeFolder() } = {}) {
     viewer: links.at(-1),
     participant: /for the participant: (\S+)/.exec(said)?.[1] ?? null,  // of a study
     origin: new URL(operator).origin,
+    pid: child.pid,
     /** It stands still, as on a machine that has no time for it; then it goes on. */
     freeze: () => child.kill("SIGSTOP"),
     thaw: () => child.kill("SIGCONT"),

@@ -40,9 +40,9 @@ const HEADERS = {
   "Referrer-Policy": "no-referrer",
 };
 const EXAMPLES = [
-  { id: "gear_pump", name: "Gear pump", about: "38 parts with press fits, bolts and pins" },
-  { id: "bushing", name: "Bushing rig", about: "Shaft, bushing and chuck: the fits of the paper" },
-  { id: "frame_500", name: "Frame of 500", about: "A large frame, to see how far it goes" },
+  { id: "gear_pump", name: "Gear pump", about: "38 parts with press fits, bolts and pins", is_recent: false },
+  { id: "bushing", name: "Bushing rig", about: "Shaft, bushing and chuck: the fits of the paper", is_recent: false },
+  { id: "frame_500", name: "Frame of 500", about: "A large frame, to see how far it goes", is_recent: false },
 ];
 
 let world = null;
@@ -182,7 +182,7 @@ function sendFile(response, pathname) {
 }
 
 const lease = () => [...clients].find(([, client]) => client.role === (study === null ? "operator" : "participant"))?.[0];
-const roles = () => [...clients].map(([id, { role }]) => ({ id, role, has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
+const roles = () => [...clients].map(([id, { role }]) => ({ id, name: "", role, has_lease: id === lease(), hands: id === lease() ? [0, 1] : [] }));
 
 /** From where it lies, up, across and down into its place. */
 function makePath({ start, goal }) {

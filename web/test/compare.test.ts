@@ -218,8 +218,8 @@ describe("hands", () => {
 
   it("are led by one client each", () => {
     const clients: Client[] = [
-      { id: "c1", role: "operator", has_lease: true, hands: [0] },
-      { id: "c2", role: "operator", has_lease: false, hands: [1] },
+      { id: "c1", name: "", role: "operator", has_lease: true, hands: [0] },
+      { id: "c2", name: "", role: "operator", has_lease: false, hands: [1] },
     ];
     expect([0, 1, 2].map((hand) => leaderOf(clients, hand)?.id)).toEqual(["c1", "c2", undefined]);
   });

@@ -32,7 +32,7 @@ function makePage() {
   store.link.value = "open";
   store.client.value = "c1";
   store.hasLease.value = true;
-  store.clients.value = [{ id: "c1", role: "operator", has_lease: true, hands: [0, 1] }];
+  store.clients.value = [{ id: "c1", name: "", role: "operator", has_lease: true, hands: [0, 1] }];
   store.hands.value = [setup(0), setup(1)];
   store.live.scene.value = toyScene;
   const commands: unknown[] = [];
@@ -107,7 +107,7 @@ describe("the mouse with two hands", () => {
   it("forgets a hand that was handed over, and leads none with a real device in it", async () => {
     const { store, view, control } = makePage();
     await control.take(1);
-    store.clients.value = [{ id: "c1", role: "operator", has_lease: false, hands: [1] }];
+    store.clients.value = [{ id: "c1", name: "", role: "operator", has_lease: false, hands: [1] }];
     expect(control.isBusy).toBe(false);
     expect(view.hand.value, "the one that it still leads").toBe(1);
     expect(control.canTake(2)).toBe(true);

@@ -60,14 +60,14 @@ class TicksOfHands final : public Sink {
 
 TEST(RealtimeTest, X3TwoHandsShareASession) {  // X4; meant for the thread sanitizer
   const auto& model = PegInBlockModel();
-  Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
+  Simulation simulation(model, std::vector<haptics::TickOptions>(2));
   SimulatedPerson left({}, 1, StartOfHand(*model));
   SimulatedPerson right({}, 2, StartOfHand(*model));
   TicksOfHands hands;
   AssemblyRun run(&simulation, Persons{&left, &right}, &hands);
   FlightRecorder flight(1000, 2);
   std::size_t hands_in_frame = 0;
-  Execution execution = run.MakeExecution(&left, 2, &right);
+  Execution execution = run.MakeExecution({&left, &right}, 2);
   execution.flight = &flight;
   execution.on_frame = [&](const Frame& frame) { hands_in_frame = frame.ticks.size(); };
   const ExecutionReport report = RunRealtime(execution);

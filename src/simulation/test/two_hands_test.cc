@@ -15,6 +15,7 @@
 #include "device/profile.h"
 #include "simulation/device_session.h"
 #include "simulation/executors.h"
+#include "simulation/test/moved_hands.h"
 #include "simulation/test/session.h"
 #include "simulation/test/small_products.h"
 
@@ -27,66 +28,27 @@ using testing::Pose;
 using testing::Watch;
 
 static_assert(noexcept(std::declval<HapticSide&>().Tick(1, std::declval<const DeviceState&>())));
-static_assert(noexcept(std::declval<const haptics::HapticTick&>().Exchange()));
+static_assert(noexcept(std::declval<const haptics::HapticTick&>().Exchange(1)));
 
-constexpr double kHalf = 15e-3;  // [m] of each block's edges
+using testing::kHalf;
 const OccurrenceId kFirst(0);
 const OccurrenceId kSecond(1);
 const OccurrenceId kThird(2);
 
 /** Three blocks with nothing to do with one another. */
 const std::shared_ptr<const Model>& Blocks() {
-  static const std::shared_ptr<const Model> model = [] {
-    product::Product product;
-    product.name = "blocks";
-    const auto block =
-        testing::AddPart(&product, "block", contact::testing::Block(Vec3::Constant(kHalf)));
-    for (int i = 0; i < 3; ++i) {
-      testing::Place(&product, block, "block " + std::to_string(i), Pose(Vec3(0.1 * i, 0, 0)));
-    }
-    testing::Complete(&product);
-    Diagnostics diagnostics;
-    return *Compile(std::make_shared<product::Product>(product), testing::FastOptions(),
-                    &diagnostics);
-  }();
+  static const std::shared_ptr<const Model> model = testing::MakeBlocks(3);
   return model;
 }
 
 /** Two hands that go from place to place at constant speed, turning nothing. */
-class TwoHands {
+class TwoHands : public testing::MovedHands {
  public:
   explicit TwoHands(std::shared_ptr<const Model> model)
-      : simulation(std::move(model), haptics::TickOptions(), haptics::TickOptions()) {}
+      : testing::MovedHands(std::move(model), 2) {}
 
   void Run(double time, const Vec3& v_0 = Vec3::Zero(), const Vec3& v_1 = Vec3::Zero()) {
-    const std::array v{v_0, v_1};
-    for (int i = 0, n = static_cast<int>(std::lround(1e3 * time)); i < n; ++i) {
-      for (std::size_t hand = 0; hand < 2; ++hand) {
-        DeviceState& state = states[hand];
-        state.t_ns += 1'000'000;
-        state.V_DH.v = v[hand];
-        state.X_DH = Pose(state.X_DH.q(), state.X_DH.p() + 1e-3 * v[hand]);
-        out[hand] = simulation.haptics().Tick(hand, state);
-        watches[hand].OnTick(hand, state, out[hand]);
-      }
-      if (states[0].t_ns % Simulation::kPhysicsStepNs == 0) {
-        simulation.physics().Step(&events);
-      }
-    }
-  }
-
-  [[nodiscard]] Vec3 CentreOf(OccurrenceId id) const {
-    return simulation.physics().pose(id) * simulation.model().bodies[id.index()].mass.p_BoBcm_B;
-  }
-
-  /** Moves a hand to a place at once; only an empty one should. */
-  void PutHand(std::size_t hand, const Vec3& p_W) { states[hand].X_DH = Pose(p_W); }
-
-  void Take(std::size_t hand, OccurrenceId id) {
-    PutHand(hand, CentreOf(id));
-    Run(0.05);
-    states[hand].is_gripping = true;
-    Run(0.5);
+    testing::MovedHands::Run(time, {v_0, v_1});
   }
 
   /** With a block in each hand, face to face along x, 5 mm apart, 10 cm over where they lay. */
@@ -101,12 +63,6 @@ class TwoHands {
     Run(1.0, Vec3::Zero(), p_beside - states[1].X_DH.p());
     Run(0.3);
   }
-
-  Simulation simulation;
-  std::array<DeviceState, 2> states;
-  std::array<haptics::TickOutput, 2> out;
-  std::array<Watch, 2> watches;
-  Watch events;
 };
 
 /** How far the two hands' forces along x are from being equal and opposite, of their size. */
@@ -309,7 +265,7 @@ TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
   const auto model = testing::PegInBlockModel();
   const haptics::TickOptions options;
   Simulation one(model, options);
-  Simulation two(model, options, options);
+  Simulation two(model, std::vector{options, options});
   std::vector<std::string> digests;
   for (Simulation* simulation : {&one, &two}) {
     SimulatedPerson person({}, 1, StartOfHand(*model));
@@ -383,7 +339,7 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   const auto model = Blocks();
   Person left("openhaptics", "touch", 1, *model);
   Person right("haply", "inverse3", 2, *model);
-  Simulation simulation(model, left.options, right.options);
+  Simulation simulation(model, std::vector{left.options, right.options});
   TickLog log(100'000);
   simulation.KeepLog(&log);
   Assign(simulation, kFirst, &left.person);
@@ -391,8 +347,7 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   Forces forces;
   Execution execution;
   execution.simulation = &simulation;
-  execution.hand = &left.hand;
-  execution.second_hand = &right.hand;
+  execution.hands = {&left.hand, &right.hand};
   execution.sink = &forces;
   execution.log = &log;
   int steps = 0;
@@ -416,7 +371,7 @@ TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // 
   }
   EXPECT_GT(left.emulator->device().truth().commands, 1000u);
   EXPECT_GT(right.emulator->device().truth().commands, 1000u);
-  Simulation again(model, left.options, right.options);
+  Simulation again(model, std::vector{left.options, right.options});
   ASSERT_EQ(log.tick_count(), 2 * report.ticks);
   ASSERT_TRUE(log.tick(2 * 1050).is_stopped);
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
@@ -470,11 +425,11 @@ class FullHands final : public Sink {
 /** Two simulated persons without devices, who assemble a model. */
 struct Pair {
   explicit Pair(const std::shared_ptr<const Model>& model)
-      : simulation(model, haptics::TickOptions(), haptics::TickOptions()),
+      : simulation(model, std::vector<haptics::TickOptions>(2)),
         left({}, 1, StartOfHand(*model)),
         right({}, 2, StartOfHand(*model)),
         run(&simulation, Persons{&left, &right}, &hands) {
-    (void)RunLockstep(run.MakeExecution(&left, 60, &right));
+    (void)RunLockstep(run.MakeExecution({&left, &right}, 60));
     EXPECT_TRUE(run.is_done());
     for (const PartResult& part : run.results()) {
       EXPECT_TRUE(part.is_seated) << part.reason;
@@ -504,14 +459,14 @@ TEST(TwoPersonsTest, TakeTurnsWhereOnePartIsInTheOthersWay) {
 
 TEST(TwoPersonsTest, WhatAnotherHandHasPutInItsPlaceIsDone) {
   const auto model = Blocks();
-  Simulation simulation(model, haptics::TickOptions(), haptics::TickOptions());
+  Simulation simulation(model, std::vector<haptics::TickOptions>(2));
   const OccurrenceId base = model->sequence.steps.front().occurrence;
   ASSERT_NE(base, kSecond);
   SimulatedPerson by_itself({}, 1, StartOfHand(*model));  // its tasks do not come from the run
   SimulatedPerson partner({}, 2, StartOfHand(*model));
   Assign(simulation, kSecond, &by_itself);
   AssemblyRun run(&simulation, Persons{nullptr, &partner}, nullptr);
-  Execution execution = run.MakeExecution(&by_itself, 60, &partner);
+  Execution execution = run.MakeExecution({&by_itself, &partner}, 60);
   execution.advance = [&] {
     if (by_itself.finished_count() > 0) {
       run.Advance();

@@ -254,6 +254,28 @@ TEST(AccessTest, EachInvitationLetsOneMoreBrowserIn) {
   EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, second)), Role::kOperator);
 }
 
+TEST(AccessTest, WhoOpenedTheStudioEndsTheSharing) {
+  Access access({}, kPort, false);
+  const std::string host = ComeBy(&access, access.token(Role::kOperator));
+  const std::string invitation = access.MakeInvitation(Role::kOperator);
+  const std::string guest = ComeBy(&access, invitation);
+  const std::string unused = access.MakeInvitation(Role::kOperator);
+  const std::string viewers = access.token(Role::kViewer);
+  const std::string viewer = ComeBy(&access, viewers);
+  for (const std::string& other : {guest, viewer, std::string(), std::string("x=y")}) {
+    EXPECT_FALSE(access.EndSharing(other)) << other;
+    EXPECT_EQ(access.RoleOfCookie(guest), Role::kOperator);
+  }
+  EXPECT_TRUE(access.EndSharing(host));
+  EXPECT_EQ(access.RoleOfCookie(host), Role::kOperator);
+  EXPECT_FALSE(access.RoleOfCookie(guest));
+  EXPECT_FALSE(access.RoleOfCookie(viewer));
+  for (const std::string& old : {invitation, unused, viewers}) {
+    EXPECT_FALSE(access.Admit(old, "")) << "the link is void";
+  }
+  EXPECT_TRUE(access.Admit(access.token(Role::kViewer), "")) << "a new one can be passed on";
+}
+
 TEST(AccessTest, FreshLinkIsAnotherOneOnceSomebodyHasComeByIt) {
   Access access({}, kPort, false);
   const std::string fresh = access.FindUnusedLink(Role::kParticipant);

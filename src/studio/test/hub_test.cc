@@ -250,7 +250,7 @@ TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
       [](const Json& e) { return e["event"] == "hands" && e["hands"].size() == 2; }, start));
   EXPECT_EQ(ask(a, &first, "lease", {{"action", "give"}, {"to", b}, {"hand", 1}})["ok"], true);
   const Json clients = second.Last("roles")["clients"];
-  EXPECT_EQ(clients[0]["hands"], Json::array({0}));
+  EXPECT_EQ(clients[0]["hands"], Json::array({0, 2, 3, 4, 5, 6, 7}));
   EXPECT_EQ(clients[1]["hands"], Json::array({1}));
   EXPECT_EQ(clients[1]["has_lease"], false);
   // Each commands the own hand only, and the second one nothing else.
@@ -271,7 +271,87 @@ TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
   EXPECT_EQ(ask(b, &second, "take", {{"hand", 1}, {"occurrence", 1}})["ok"], true);
   hub_.Leave(a);
   EXPECT_EQ(ask(b, &second, "lease", {{"action", "request"}})["ok"], true);
-  EXPECT_EQ(second.Last("roles")["clients"][0]["hands"], Json::array({0, 1}));
+  EXPECT_EQ(second.Last("roles")["clients"][0]["hands"], Json::array({0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST_F(HubTest, ThreeHandsTakeAPartEachAndANinthIsRefused) {
+  OpenPeg();
+  FakeLink first;
+  const std::string a = Join(Role::kOperator, &first);
+  const auto hands = [&](int count) {
+    return Ask(a, &first, {{"command", "hands"}, {"count", count}});
+  };
+  EXPECT_TRUE(IsError(hands(0), "invalid"));
+  EXPECT_TRUE(IsError(hands(9), "invalid"));
+  const std::size_t start = log_.size();
+  EXPECT_EQ(hands(3)["ok"], true);
+  ASSERT_TRUE(log_.Await(
+      [](const Json& e) { return e["event"] == "hands" && e["hands"].size() == 3; }, start));
+  FakeLink second;
+  const std::string b = Join(Role::kOperator, &second);
+  EXPECT_EQ(Ask(a, &first, {{"command", "lease"}, {"action", "give"}, {"to", b}, {"hand", 2}})["ok"],
+            true);
+  // Control is that of whoever leads hand 0; the third hand stays with whom it was given to.
+  FakeLink third;
+  const std::string c = Join(Role::kOperator, &third);
+  const Json reply = Ask(c, &third, {{"command", "lease"}, {"action", "request"}});
+  EXPECT_EQ(reply["result"]["waits_for"], a);
+  EXPECT_EQ(first.Last("lease_asked")["hands"], Json::array({0, 1, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(Ask(b, &second, {{"command", "take"}, {"hand", 2}, {"occurrence", 1}})["ok"], true);
+  EXPECT_TRUE(log_.Await([](const Json& e) { return e["event"] == "taken" && e["hand"] == 2; }));
+}
+
+TEST_F(HubTest, OthersSeeNamesAndWhatIsLookedAt) {
+  FakeLink first;
+  FakeLink second;
+  const std::string a = Join(Role::kOperator, &first);
+  const std::string b = Join(Role::kViewer, &second);
+  EXPECT_EQ(Ask(a, &first, {{"command", "introduce"}, {"name", "  Ada\n<b>Byron\x7f "}})["ok"], true);
+  EXPECT_EQ(second.Last("roles")["clients"][0]["name"], "Ada <b>Byron");
+  EXPECT_TRUE(IsError(
+      Ask(a, &first, {{"command", "introduce"}, {"name", std::string(41, 'x')}}), "invalid"));
+  const Json look{{"command", "look"}, {"eye", {0, -1, 0.5}}, {"target", {0, 0, 0}}};
+  EXPECT_EQ(Ask(b, &second, look)["ok"], true);
+  EXPECT_EQ(first.Last("looking")["client"], b);
+  EXPECT_TRUE(first.Last("looking")["p_m"].is_null());
+  EXPECT_TRUE(second.Last("looking").is_null()) << "who looks knows";
+  for (const Json& bad : {Json(nullptr), Json::array({0, 1}), Json::array({0, 1, "x"}),
+                          Json::array({0, 1, 1e7}), Json::array({0, 1, nullptr})}) {
+    Json wrong = look;
+    wrong["eye"] = bad;
+    EXPECT_TRUE(IsError(Ask(b, &second, wrong), "invalid")) << bad;
+  }
+}
+
+TEST_F(HubTest, NotesArePinnedToPartsAndSeenByAll) {
+  OpenPeg();
+  FakeLink first;
+  FakeLink viewer;
+  const std::string a = Join(Role::kOperator, &first);
+  const std::string v = Join(Role::kViewer, &viewer);
+  const auto add = [&](const std::string& by, FakeLink* link, Json occurrence, const char* text) {
+    return Ask(by, link, {{"command", "add_note"}, {"occurrence", occurrence}, {"p_B", {0, 0, 0.01}},
+                          {"text", text}});
+  };
+  const std::size_t start = log_.size();
+  const Json reply = add(a, &first, 1, "Deburr this edge");
+  ASSERT_EQ(reply["ok"], true);
+  const auto told = log_.Await([](const Json& e) { return e["event"] == "notes"; }, start);
+  ASSERT_TRUE(told);
+  ASSERT_EQ((*told)["notes"].size(), 1u);
+  EXPECT_EQ((*told)["notes"][0]["text"], "Deburr this edge");
+  EXPECT_EQ((*told)["notes"][0]["by"], a);
+  EXPECT_TRUE(IsError(add(v, &viewer, 1, "a viewer's"), "invalid"));
+  EXPECT_TRUE(IsError(add(a, &first, 99, "no part"), "not-found"));
+  EXPECT_TRUE(IsError(add(a, &first, 1, " \t "), "invalid"));
+  EXPECT_TRUE(IsError(Ask(a, &first, {{"command", "remove_note"}, {"note", "n99"}}), "not-found"));
+  const Json id = reply["result"]["note"];
+  EXPECT_EQ(Ask(a, &first, {{"command", "remove_note"}, {"note", id}})["ok"], true);
+  EXPECT_TRUE(bench_.notes().List().empty());
+  for (std::size_t i = 0; i < WorkbenchNotes::kMaxNotes; ++i) {
+    ASSERT_TRUE(bench_.notes().Add({"c1", "more", product::OccurrenceId(0), Vec3::Zero()}));
+  }
+  EXPECT_TRUE(IsError(add(a, &first, 1, "too many"), "out-of-resource"));
 }
 
 TEST_F(HubTest, OneClientTooManyIsRefused) {
@@ -354,7 +434,7 @@ TEST_F(HubTest, FieldsOfTheWrongTypeAreNamed) {
                           Json(nullptr), Json::array({1}), Json(true)}) {
     EXPECT_TRUE(names({{"command", "take"}, {"occurrence", bad}}, "occurrence")) << bad;
   }
-  EXPECT_TRUE(names({{"command", "take"}, {"hand", 2}, {"occurrence", 1}}, "hand"));
+  EXPECT_TRUE(names({{"command", "take"}, {"hand", 8}, {"occurrence", 1}}, "hand"));
   EXPECT_TRUE(names({{"command", "release"}, {"hand", "left"}}, "hand"));
   EXPECT_TRUE(names({{"command", "use"}, {"hand", 0}}, "device"));
   for (const Json& bad : {Json(-1), Json(1e300), Json("1"), Json(nullptr)}) {

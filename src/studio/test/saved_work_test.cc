@@ -64,6 +64,9 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   Bench killed(file_);
   Open(&killed);
   AssignFit(&killed, "H7/h6");
+  ASSERT_TRUE(killed.bench.notes().Add({"Ada", "Deburr", kKeptPeg, Vec3(0, 0, 0.01)}));
+  ASSERT_TRUE(AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->notes.size() == 1; }))
+      << "without any other change";
   ASSERT_TRUE(killed.bench.demo().DoNext());
   ASSERT_TRUE(AwaitTrue([this] { return KeptPlacement() == Placement::kPlaced; }));
   ASSERT_TRUE(AwaitTrue([&] { return !killed.bench.live().is_demo(); }));
@@ -93,6 +96,9 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   const auto& mate = next.bench.live().scene()->model->product->mates[0];
   ASSERT_TRUE(mate.fit.has_value());
   EXPECT_EQ(mate.fit->code, "H7/h6");
+  ASSERT_EQ(next.bench.notes().List().size(), 1u);
+  EXPECT_EQ(next.bench.notes().List()[0]["text"], "Deburr");
+  EXPECT_EQ(next.bench.notes().List()[0]["occurrence"], kKeptPeg.index());
   EXPECT_EQ(next.bench.MakeCatchUpEvents().back()["event"], "resumed");
   ASSERT_TRUE(AwaitTrue([this] { return LoadWork(folder_ / "next.json").has_value(); }));
   EXPECT_EQ(LoadWork(folder_ / "next.json")->edits, work->edits);
@@ -143,7 +149,7 @@ TEST_F(KeptWorkTest, WorkOnAnotherProductIsSetAside) {
 }
 
 TEST_F(KeptWorkTest, DamagedFilesAreRefused) {
-  SavedWork work{"/a/peg.step", "peg", "d", {{{"command", "remove_mate"}, {"mate", 0}}}, {}};
+  SavedWork work{"/a/peg.step", "peg", "d", {{{"command", "remove_mate"}, {"mate", 0}}}, {}, {}};
   work.state.parts = {{Placement::kPlaced, spatial::Pose()}, {Placement::kParked, spatial::Pose()}};
   ASSERT_TRUE(SaveWork(file_, work));
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -162,6 +168,18 @@ TEST_F(KeptWorkTest, DamagedFilesAreRefused) {
         good.dump().substr(0, good.dump().size() / 2)}) {
     std::ofstream(file_) << bad;
     EXPECT_FALSE(LoadWork(file_).has_value()) << bad;
+  }
+  // Notes that are damaged are left out.
+  for (const nlohmann::json& notes :
+       {nlohmann::json(5), nlohmann::json::array({5}), nlohmann::json::array({{{"text", 1}}}),
+        nlohmann::json::array({{{"text", "x"}, {"by", "y"}, {"occurrence", 1e9}}})}) {
+    std::ofstream(file_) << with("/notes", notes);
+    const auto loaded = LoadWork(file_);
+    ASSERT_TRUE(loaded.has_value()) << notes;
+    Bench one(folder_ / "notes.json");
+    Open(&one);
+    one.bench.notes().Restore(loaded->notes);
+    EXPECT_TRUE(one.bench.notes().List().empty()) << notes;
   }
   for (const nlohmann::json& command :
        {nlohmann::json(), nlohmann::json(5), nlohmann::json{{"command", "open"}},

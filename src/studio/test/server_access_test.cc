@@ -134,6 +134,20 @@ TEST_F(ServerTest, WhoeverSteersMakesLinksForOthers) {
   EXPECT_EQ(Post("/api/link", "{}").status, 401);
 }
 
+TEST_F(ServerTest, WhoOpenedTheStudioEndsTheSharing) {
+  const std::string host = CookieOf(Role::kOperator);
+  const std::string viewer = CookieOf(Role::kViewer);
+  const auto end = [this](const std::string& cookie) {
+    return Post("/api/end_sharing", "{}", {{"Cookie", cookie}}).status;
+  };
+  EXPECT_EQ(Post("/api/end_sharing", "{}").status, 401);
+  EXPECT_EQ(end(viewer), 403);
+  EXPECT_EQ(Get("/api/recordings", {{"Cookie", viewer}}).status, 200);
+  EXPECT_EQ(end(host), 200);
+  EXPECT_EQ(Get("/api/recordings", {{"Cookie", viewer}}).status, 401);
+  EXPECT_EQ(Get("/api/recordings", {{"Cookie", host}}).status, 200);
+}
+
 TEST_F(ServerTest, WrongTokensAreRefused) {
   EXPECT_EQ(GiveToken("").status, 401);
   EXPECT_EQ(GiveToken(MakeToken()).status, 401);

@@ -1,6 +1,7 @@
 /** Everything that can be done, once: menus, palette, tools, keys and the right-click menu show the same. */
 
 import { clearPicks, isolate, select, setHidden, showAll, toggleGhost, type Tool } from "../model/view_state";
+import { handToJoin } from "../model/people";
 import type { PathKind } from "../model/part_path";
 import type { ViewName } from "../view3d/camera_rig";
 import { canSteer, leadsHand, paths, store, studio, ui, view, viewport } from "./app_state";
@@ -47,7 +48,7 @@ async function askForLease(): Promise<void> {
 
 /** For a hand of one's own beside that of whoever steers. */
 async function askToJoin(): Promise<void> {
-  noteAsked(await studio.command({ command: "lease", action: "request", hand: 1 }));
+  noteAsked(await studio.command({ command: "lease", action: "request", hand: handToJoin(store.hands.value, store.clients.value) }));
 }
 
 function noteAsked(answer: CommandResults["lease"] | null): void {
@@ -56,11 +57,11 @@ function noteAsked(answer: CommandResults["lease"] | null): void {
   }
 }
 
-/** To whoever asked for it; a second hand that is not there yet is made. */
+/** To whoever asked for it; a hand that is not there yet is made. */
 async function giveLease(): Promise<void> {
   const asked = store.leaseAsked.value;
-  const isSecond = asked?.hands.every((hand) => hand >= store.hands.value.length) === true;
-  if (isSecond && (await studio.command({ command: "hands", count: 2 })) === null) {
+  const count = Math.min(...(asked?.hands ?? [])) + 1;
+  if (count > store.hands.value.length && asked !== null && (await studio.command({ command: "hands", count })) === null) {
     return;
   }
   for (const hand of asked?.hands.filter((each) => store.ownHands.value.includes(each)) ?? []) {
@@ -139,6 +140,9 @@ const viewActions: Action[] = [
   }),
   action("path-points", "action.pathPoints", () => showPath("points"), { isEnabled: hasOneChosen, startsGroup: true }),
   action("path-swept", "action.pathSwept", () => showPath("swept"), { isEnabled: hasOneChosen }),
+  action("note", "action.note", () => (ui.overlay.value = { kind: "note" }), {
+    isEnabled: () => hasOneChosen() && store.role.value === "operator" && store.study.value === null && store.replay.value === null,
+  }),
   action("section", "action.section", toggleSection, {
     startsGroup: true,
     keys: ["x"],

@@ -23,6 +23,7 @@ export type Overlay =
   | { kind: "devices" }
   | { kind: "views" }
   | { kind: "share" }
+  | { kind: "note" }
   | { kind: "menu"; x: number; y: number; occurrence: number | null };
 
 /** What the one sheet of a phone shows. */
@@ -61,6 +62,10 @@ export const ui = {
   /** Recordings that are laid side by side. */
   compared: signal<readonly string[]>([]),
   isInVr: signal(false),
+  /** As others see the user of this page; empty: not given. */
+  userName: signal(""),
+  /** The server knows a name of this page. */
+  hasName: signal(false),
   /** What is searched in the tree. */
   treeSearch: signal(""),
   /** Asks the tree's search field to take the focus. */

@@ -5,6 +5,7 @@ import { findAction, runAction } from "./actions";
 import { canSteer, store, studio } from "./app_state";
 import { logText } from "./event_list";
 import { PartAsked } from "./hand_over";
+import { clientName, FollowedBanner } from "./people";
 import { t } from "./i18n";
 import { Icon } from "./icons";
 import { backToLive } from "./time_source";
@@ -72,8 +73,8 @@ export function Banners() {
           <Icon name="hand" />
           <span>
             {asked.hands.length === 1
-              ? t("banner.handAsked", { client: asked.by, n: (asked.hands[0] ?? 0) + 1 })
-              : t("banner.leaseAsked", { client: asked.by })}
+              ? t("people.handAsked", { name: clientName(asked.by), n: (asked.hands[0] ?? 0) + 1 })
+              : t("people.controlAsked", { name: clientName(asked.by) })}
           </span>
           <button type="button" class="banner-button" onClick={() => runAction(findAction("lease-give"))}>
             {t("banner.give")}
@@ -84,6 +85,7 @@ export function Banners() {
         </div>
       ) : null}
       <PartAsked />
+      <FollowedBanner />
       {store.demo.value ? (
         <div class="banner is-info" data-testid="demo-runs">
           <Icon name="play" />

@@ -1,9 +1,11 @@
+import { dePeople } from "./de_people";
 import { deStudy } from "./de_study";
 import { deTime } from "./de_time";
 import { deView } from "./de_view";
 import type { MessageKey } from "./en";
 
 export const de: Record<MessageKey, string> = {
+  ...dePeople,
   ...deStudy,
   ...deTime,
   ...deView,
@@ -252,7 +254,6 @@ export const de: Record<MessageKey, string> = {
   "banner.viewer": "Sie sehen zu.",
   "banner.demo": "Die simulierte Person arbeitet.",
   "banner.stop": "Anhalten",
-  "banner.leaseAsked": "{client} bittet um die Steuerung.",
   "banner.give": "Geben",
   "banner.keep": "Behalten",
   "banner.dismiss": "Ausblenden",

@@ -149,5 +149,4 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "condition.lost": "verloren",
   "condition.stopped": "angehalten",
   "condition.fault": "Störung",
-  "banner.handAsked": "{client} möchte Hand {n}.",
 };

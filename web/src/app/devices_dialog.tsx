@@ -1,6 +1,7 @@
 /** The hands, what each of them is, and the devices that could be. */
 
 import { useEffect } from "preact/hooks";
+import { kMaxHands } from "../protocol/frame_store";
 import type { FoundDevice } from "../protocol/messages";
 import { findAction, runAction } from "./actions";
 import { canSteer, store, studio, ui } from "./app_state";
@@ -21,9 +22,11 @@ async function search(): Promise<void> {
 
 function HandCount() {
   const count = store.hands.value.length;
+  const set = (n: number) => void studio.command({ command: "hands", count: n });
   return (
-    <span class="segments is-text" role="radiogroup" aria-label={t("devices.count")}>
-      {[1, 2].map((n) => (
+    <span class="hand-count">
+      <span class="segments is-text" role="radiogroup" aria-label={t("devices.count")}>
+      {[1, 2, ...(count > 2 ? [count] : [])].map((n) => (
         <button
           key={n}
           type="button"
@@ -31,11 +34,15 @@ function HandCount() {
           aria-checked={count === n}
           disabled={!leads(0)}
           data-testid={`hands-${n}`}
-          onClick={() => count !== n && void studio.command({ command: "hands", count: n })}
+          onClick={() => count !== n && set(n)}
         >
-          {t(n === 1 ? "devices.oneHand" : "devices.twoHands")}
+          {n > 2 ? t("devices.moreHands", { n }) : t(n === 1 ? "devices.oneHand" : "devices.twoHands")}
         </button>
       ))}
+      </span>
+      <button type="button" class="small-button" disabled={!leads(0) || count < 2 || count >= kMaxHands} data-testid="add-hand" onClick={() => set(count + 1)}>
+        {t("devices.addHand")}
+      </button>
     </span>
   );
 }

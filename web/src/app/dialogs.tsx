@@ -139,7 +139,7 @@ function Shortcuts() {
   );
 }
 
-const kOnPart = ["take", "release", "fit", "hide", "isolate", "ghost", "show-all", "path-points", "path-swept", "section", "tool-measure", "tool-mate"];
+const kOnPart = ["take", "release", "fit", "hide", "isolate", "ghost", "show-all", "path-points", "path-swept", "note", "section", "tool-measure", "tool-mate"];
 const kOnFloor = ["fit", "show-all", "view-iso", "view-front", "view-top", "ortho", "section", "explode", "screenshot", "palette"];
 
 function ContextMenu({ x, y, isOnPart }: { x: number; y: number; isOnPart: boolean }) {
@@ -175,6 +175,8 @@ export function Overlays() {
       return <Lazy key="views" load={() => import("./views_dialog")} />;
     case "share":
       return <Lazy key="share" load={() => import("./share_dialog")} />;
+    case "note":
+      return <Lazy key="note" load={() => import("./note_dialog")} />;
     case "devices":
       return <Lazy key="devices" load={() => import("./devices_dialog")} />;
     case "menu":

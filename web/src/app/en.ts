@@ -1,9 +1,11 @@
+import { enPeople } from "./en_people";
 import { enStudy } from "./en_study";
 import { enTime } from "./en_time";
 import { enView } from "./en_view";
 
 /** English, and with it the keys that every language has. */
 export const en = {
+  ...enPeople,
   ...enStudy,
   ...enTime,
   ...enView,
@@ -253,7 +255,6 @@ export const en = {
   "banner.demo": "The simulated person is working.",
   "banner.stop": "Stop",
   "banner.dismiss": "Dismiss",
-  "banner.leaseAsked": "{client} asks for control.",
   "banner.give": "Give",
   "banner.keep": "Keep",
   "palette.title": "All commands",

@@ -147,5 +147,4 @@ export const enTime = {
   "condition.lost": "disconnected",
   "condition.stopped": "stopped",
   "condition.fault": "fault",
-  "banner.handAsked": "{client} asks for hand {n}.",
 } as const;

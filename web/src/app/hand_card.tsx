@@ -9,6 +9,7 @@ import { deviceName } from "./device_name";
 import type { MessageKey } from "./en";
 import { figures, number, t } from "./i18n";
 import { Icon } from "./icons";
+import { clientName } from "./people";
 
 /** Also while a recording is looked at: hands are live. */
 export const leads = (hand: number) => store.link.value === "open" && store.ownHands.value.includes(hand);
@@ -97,7 +98,7 @@ function Lease({ hand }: { hand: number }) {
           ? t("devices.ledByNone")
           : isOwn
             ? t("devices.ledByYou")
-            : t("devices.ledBy", { client: leader.id })}
+            : t("devices.ledBy", { client: clientName(leader.id) })}
       </span>
       <span class="spacer" />
       {isOwn && others.length > 0 ? (
@@ -109,7 +110,7 @@ function Lease({ hand }: { hand: number }) {
           <option value="">{t("devices.giveTo")}</option>
           {others.map((client) => (
             <option key={client.id} value={client.id}>
-              {client.id}
+              {clientName(client.id)}
             </option>
           ))}
         </select>

@@ -4,6 +4,7 @@ import { followsPointer } from "../model/hands";
 import { store, studio, ui, viewport } from "./app_state";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { clientName } from "./people";
 
 const partName = (occurrence: number) => store.occurrences.value.get(occurrence)?.name ?? "";
 const heldIn = (hand: number) => store.held.value.find((held) => held.hand === hand) ?? null;
@@ -22,7 +23,7 @@ export function PartAsked() {
   return (
     <div class="banner is-info" role="alert" data-testid="part-asked">
       <Icon name="hand" />
-      <span>{t("banner.partAsked", { client: asked.by, part: partName(held.occurrence) })}</span>
+      <span>{t("banner.partAsked", { client: clientName(asked.by), part: partName(held.occurrence) })}</span>
       <button type="button" class="banner-button" onClick={give}>
         {t("action.handOver")}
       </button>
@@ -47,8 +48,12 @@ export function HandOverButton() {
     return null;
   }
   const pointers = hands.map((each) => each.hand).filter((hand) => followsPointer(hands, hand));
-  const from = pointers.find((hand) => heldIn(hand) !== null);
-  const to = pointers.find((hand) => heldIn(hand) === null);
+  const holding = pointers.filter((hand) => heldIn(hand) !== null);
+  const free = pointers.filter((hand) => heldIn(hand) === null);
+  const isOwn = (hand: number) => own.includes(hand);
+  const from = holding.find(isOwn) ?? holding[0];
+  // Rather to somebody else than into the other hand of the same user.
+  const to = from === undefined || !isOwn(from) ? free.find(isOwn) : (free.find((hand) => !isOwn(hand)) ?? free[0]);
   if (from === undefined || to === undefined) {
     return null;
   }

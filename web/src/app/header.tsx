@@ -6,6 +6,7 @@ import { ForcesButton } from "./forces_button";
 import { number, t } from "./i18n";
 import { Icon } from "./icons";
 import { MenuBar } from "./menu";
+import { PeopleChip } from "./people";
 
 function Chips() {
   const status = store.status.value;
@@ -45,6 +46,7 @@ export function Header() {
       <ActionButton id="undo" icon="undo" />
       <ActionButton id="redo" icon="redo" />
       <Chips />
+      <PeopleChip />
       <ActionButton id="demo" icon="play" />
       <ActionButton id="mute" icon={findAction("mute").isOn?.() ? "mute" : "sound"} />
       <ActionButton id="theme" icon="theme" />

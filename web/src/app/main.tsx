@@ -5,6 +5,7 @@ import { followTraces, store, studio, view, viewport } from "./app_state";
 import { logText } from "./event_list";
 import { language, t } from "./i18n";
 import { listenToKeys } from "./keyboard";
+import { introduceOneself } from "./people";
 import { keepPreferences } from "./preferences";
 import { rememberParticipant, Root } from "./root";
 import { showShared } from "./shared_link";
@@ -17,6 +18,7 @@ import "./styles/layout.css";
 import "./styles/panels.css";
 import "./styles/view.css";
 import "./styles/time.css";
+import "./styles/people.css";
 import "./styles/phone.css";
 
 const { token, rest } = takeToken(location.hash);
@@ -35,6 +37,7 @@ effect(() => {
   document.title = store.study.value?.title || t("app.title");
 });
 effect(rememberParticipant);
+introduceOneself();
 render(<Root hasToken={token !== null} />, document.getElementById("app")!);
 listenToKeys();
 startSounds();

@@ -6,7 +6,9 @@ import { chooseFile } from "./exports";
 import { number, t } from "./i18n";
 import type { MessageKey } from "./en";
 import { en } from "./en";
+import type { Example } from "../protocol/messages";
 import { Icon } from "./icons";
+import { StartDemo, StartDevices } from "./start_page";
 
 function stageName(stage: string): string {
   const key = `load.${stage.toLowerCase()}`;
@@ -33,6 +35,7 @@ export function EmptyState() {
   const mayOpen = canSteer();
   return (
     <div class="empty" data-testid="empty">
+      <StartDemo />
       <h2 class="empty-title">{t("empty.title")}</h2>
       <button type="button" class="drop-zone" disabled={!mayOpen} onClick={chooseFile} data-testid="drop-zone">
         <Icon name="upload" size={36} />
@@ -41,9 +44,20 @@ export function EmptyState() {
         <span class="quiet">{t("empty.formats")}</span>
       </button>
       {mayOpen ? null : <p class="quiet">{t("empty.needsLease")}</p>}
-      <p class="empty-or">{t("empty.examples")}</p>
+      <Offered title={t("start.recent")} offered={store.examples.value.filter((each) => each.is_recent)} mayOpen={mayOpen} />
+      <Offered title={t("empty.examples")} offered={store.examples.value.filter((each) => !each.is_recent)} mayOpen={mayOpen} />
+      <StartDevices />
+    </div>
+  );
+}
+
+/** Products to open by a click; nothing where there are none. */
+function Offered({ title, offered, mayOpen }: { title: string; offered: readonly Example[]; mayOpen: boolean }) {
+  return offered.length === 0 ? null : (
+    <>
+      <p class="empty-or">{title}</p>
       <div class="examples">
-        {store.examples.value.map((example) => (
+        {offered.map((example) => (
           <button
             key={example.id}
             type="button"
@@ -52,13 +66,13 @@ export function EmptyState() {
             data-testid={`example-${example.id}`}
             onClick={() => void studio.command({ command: "open", example: example.id })}
           >
-            <Icon name="cubes" size={26} />
+            <Icon name={example.is_recent ? "cube" : "cubes"} size={26} />
             <strong>{example.name}</strong>
             <span>{example.about}</span>
           </button>
         ))}
       </div>
-    </div>
+    </>
   );
 }
 

@@ -41,6 +41,7 @@ const orNull =
   <T>(isOne: Test<T>): Test<T | null> =>
   (value): value is T | null =>
     value === null || isOne(value);
+const isName: Test<string> = (value): value is string => typeof value === "string" && value.length <= 40;
 const isSavedView: Test<SavedView> = (value): value is SavedView => {
   const { name, product, view: link } = (value ?? {}) as Partial<SavedView>;
   return [name, product, link].every((text) => typeof text === "string") && decodeView(link ?? "") !== null;
@@ -64,6 +65,7 @@ const kPreferences: Record<string, Preference> = {
   modelWidth: keep(ui.sizes.model, isNumber),
   inspectorWidth: keep(ui.sizes.inspector, isNumber),
   plotsHeight: keep(ui.sizes.plots, isNumber),
+  userName: keep(ui.userName, isName),
   views: keep(ui.savedViews, listOf(isSavedView)),
 };
 

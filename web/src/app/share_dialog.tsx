@@ -11,6 +11,7 @@ import { Dialog, DialogHead } from "./dialog";
 import { shownFragment } from "./exports";
 import { t } from "./i18n";
 import { Icon } from "./icons";
+import { PeopleList } from "./people";
 
 const close = () => (ui.overlay.value = null);
 
@@ -124,6 +125,7 @@ export default function ShareDialog() {
     <Dialog title={t("share.title")} kind="share" onClose={close}>
       <DialogHead title={t("share.title")} onClose={close} />
       <div class="dialog-body share-body">
+        <PeopleList />
         {store.role.value === "operator" ? <Guests guest={guest} /> : null}
         {isDone ? (
           <>

@@ -176,6 +176,8 @@ export function exposeHooks(): void {
       forcesOff: store.forcesOff.value,
       safety: store.safety.value,
       demo: store.demo.value,
+      clients: store.clients.value.length,
+      eye: viewport.value?.rig.pose().eye ?? null,
       isInVr: ui.isInVr.value,
       selected: view.selected.value,
       hidden: [...view.hidden.value],

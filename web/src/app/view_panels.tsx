@@ -12,6 +12,7 @@ import { useLive } from "./live";
 import { QuantityEntry } from "./quantity_entry";
 import { ApartPanel } from "./apart_panel";
 import { PathPanel } from "./path_panel";
+import { PeopleMarks } from "./people_marks";
 import { FinishCard } from "./summary_card";
 import { WorkshopPanel } from "./workshop_panel";
 
@@ -263,6 +264,7 @@ export function ViewPanels() {
       {tool === "mate" ? <MatePanel /> : null}
       {tool !== "mate" && tool !== "measure" ? <PathPanel /> : null}
       <MeasureLabel />
+      <PeopleMarks />
       <Legend />
       <FinishCard />
     </>

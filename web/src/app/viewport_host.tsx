@@ -2,6 +2,7 @@
 
 import { useEffect, useRef } from "preact/hooks";
 import { kNoRim, rimOf, type Rim } from "../model/framing";
+import { SharedEyes } from "../view3d/shared_eyes";
 import { Viewport } from "../view3d/viewport";
 import { paths, studio, ui, view, viewport } from "./app_state";
 import { language, t } from "./i18n";
@@ -44,6 +45,7 @@ function makeViewport(): Viewport {
     ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
   };
   made.showPaths(paths);
+  new SharedEyes(made, studio);
   return made;
 }
 

@@ -42,6 +42,16 @@ export async function exchangeToken(token: string | null): Promise<Admission> {
     : { isDenied: true, error: await readError(answer) };
 }
 
+/** All others leave. @return Why not; null where it is done. */
+export async function endSharing(): Promise<ServerError | null> {
+  const answer = await post("/api/end_sharing", {});
+  if (answer?.ok === true) {
+    return null;
+  }
+  const error = answer === null ? null : await readError(answer);
+  return error ?? { code: "io", message: "no answer", where: "", remedy: "" };
+}
+
 /** Null where the server makes none. */
 export async function invite(role: Role): Promise<Invitation | null> {
   const answer = await post("/api/link", { role });

@@ -7,6 +7,7 @@ import type {
   Example,
   HandSetup,
   HoldState,
+  Note,
   Occurrence,
   Placement,
   RecordingEntry,
@@ -17,9 +18,12 @@ import type {
   ServerStatus,
   Step,
   StudyState,
+  ServerEvent,
 } from "../protocol/messages";
 
 export type LinkState = "starting" | "open" | "lost" | "denied";
+
+export type Looking = Extract<ServerEvent, { event: "looking" }>;
 
 export interface HeldSummary {
   hand: number;
@@ -184,6 +188,11 @@ export function makeStore() {
     leaseAsked: signal<{ by: string; hands: readonly number[] } | null>(null),
     /** Who asks for the part that is in a hand of this page, and for which hand of theirs. */
     partAsked: signal<{ by: string; hand: number; to: number; occurrence: number } | null>(null),
+    /** Where others look and point to, by client. */
+    looking: signal<ReadonlyMap<string, Looking>>(new Map()),
+    /** The client whose view this page follows. */
+    followed: signal<string | null>(null),
+    notes: signal<readonly Note[]>([]),
     examples: signal<readonly Example[]>([]),
     live,
     /** The recording that is shown in place of what is live. */

@@ -4,12 +4,12 @@ import { batch } from "@preact/signals";
 import { CommandError, Connection } from "../protocol/connection";
 import type { LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
-import type { Client, Command, CommandResults, Role, Scene, ServerError, ServerEvent } from "../protocol/messages";
-import { dropAnswered, noteAsking } from "./asking";
+import type { Command, CommandResults, Role, Scene, ServerError, ServerEvent } from "../protocol/messages";
 import { CollisionCounter } from "./collisions";
 import { addToLog, countLimits, isAlarm, kAlarms, kRunsLength, runOf, tell, type Told } from "./event_log";
 import { lastingTroubles, withTrouble } from "./hands";
 import { isSameHeld, summarize } from "./held";
+import { noteClients, noteOthers } from "./people";
 import { ProductOpening } from "./product_opening";
 import { Recordings } from "./recordings";
 import { exchangeToken, readError } from "./session";
@@ -73,6 +73,11 @@ export class Studio {
       }
       throw error;
     }
+  }
+
+  /** Sends a command whose refusal concerns nobody. */
+  async tell(command: Command): Promise<void> {
+    await this.connection?.send(command).catch(() => null);
   }
 
   sendInput(inputs: readonly HandInput[]): void {
@@ -230,12 +235,13 @@ export class Studio {
         store.live.limits.value = countLimits(store.live.limits.value, event);
         break;
       case "roles":
-        store.clients.value = event.clients;
-        this.noteOwnRole(event.clients);
+        noteClients(store, event.clients);
         break;
       case "lease_asked":
       case "part_asked":
-        noteAsking(store, event);
+      case "looking":
+      case "notes":
+        noteOthers(store, event);
         break;
       case "history":
         store.history.value = { undo: event.undo, redo: event.redo };
@@ -276,15 +282,6 @@ export class Studio {
   private greet(role: Role): void {
     this.store.role.value = role;
     this.store.isGreeted.value = true;
-  }
-
-  private noteOwnRole(clients: readonly Client[]): void {
-    const own = clients.find((c) => c.id === this.store.client.value);
-    if (own !== undefined) {
-      this.store.role.value = own.role;
-      this.store.hasLease.value = own.has_lease;
-    }
-    dropAnswered(this.store, clients, own?.hands ?? []);
   }
 
   private applyAssembly(event: ServerEvent): void {

@@ -3,6 +3,7 @@
 import { computed, signal } from "@preact/signals";
 import type { FaceOf, Measurement } from "../protocol/messages";
 import type { BenchItem } from "./bench";
+import type { Vec3 } from "./math";
 import type { SectionPlane } from "./view_link";
 
 export type Tool = "hand" | "select" | "measure" | "mate";
@@ -23,6 +24,8 @@ export function makeViewState() {
     selectMode: signal<SelectMode>("part"),
     selected: signal<readonly number[]>([]),
     selectedFace: signal<FaceOf | null>(null),
+    /** Where a part was clicked last. */
+    clickedAt: signal<{ occurrence: number; p_W: Vec3 } | null>(null),
     /** The mate whose card is shown, by its key, for what is selected (ids in their order, with commas). */
     /** A mate of the list that the pointer or the keys are at: its faces are lit. */
     litMate: signal<number | null>(null),

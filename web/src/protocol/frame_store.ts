@@ -19,7 +19,7 @@ import {
 } from "./frames";
 
 export const kMaxOccurrences = 16384;
-export const kMaxHands = 2;
+export const kMaxHands = 8;
 export const kMaxContacts = 128;
 export const kSampleSlots = 2048;
 /** Of a sample: hand, time [s], then what `sampleOf` says. */

@@ -23,6 +23,7 @@ export class Clicks {
   click(event: PointerEvent, hit: PickHit | null): void {
     const { view } = this.viewport;
     const tool = view.tool.peek();
+    view.clickedAt.value = hit === null ? null : { occurrence: hit.occurrence, p_W: [hit.point.x, hit.point.y, hit.point.z] };
     if (tool === "measure" || tool === "mate") {
       if (hit !== null) {
         this.pickFace({ occurrence: hit.occurrence, face: hit.face });

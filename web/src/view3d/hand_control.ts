@@ -1,5 +1,5 @@
 /** Takes and lets go on behalf of the hands that the mouse leads, and tells the server where they are. It
- leads one at a time; the other one stays where it was led to. */
+ leads one at a time; the others stay where they were led to. */
 
 import { isPointerHand } from "../model/hands";
 import { toQuat, toVec3, type Pose } from "../model/math";
@@ -48,7 +48,7 @@ export class HandControl {
     this.life.follow(() => {
       // Whoever steers now goes on from where the part is.
       const own = studio.store.ownHands.value;
-      for (const led of this.led.filter(({ hand }) => !own.includes(hand))) {
+      for (const led of this.led.filter(({ hand, mouse }) => !own.includes(hand) && mouse.occurrence !== null)) {
         this.forget(led);
       }
     });
