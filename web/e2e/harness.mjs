@@ -467,7 +467,7 @@ export async function findAndClickFace(page, occurrence, face, moving, turn = tu
 
 /** Presses on a part and drags it a little: it is in the hand then. */
 export async function takeByMouse(page, occurrence) {
-  await waitForState(page, ({ hasLease }) => hasLease);  // who does not steer takes nothing
+  await waitForState(page, ({ leadsHand }) => leadsHand);  // who leads no hand takes nothing
   // The page brings the next part into its picture; it is pressed where it is seen when the button goes down.
   await page.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence, { timeout: 20_000 });
   await waitForView(page);

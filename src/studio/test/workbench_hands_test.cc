@@ -85,7 +85,8 @@ TEST_F(WorkbenchHandsTest, HeldPartStaysAndTheForceGoesWhenNothingIsHeard) {  //
 TEST_F(WorkbenchHandsTest, SecondHandDoesWhatTheFirstOneDoes) {  // N11: two hands
   OpenPeg();
   EXPECT_FALSE(bench_.hands().Take(1, OccurrenceId(kPeg)));  // there is one hand only
-  EXPECT_FALSE(bench_.hands().SetCount(3));
+  EXPECT_FALSE(bench_.hands().SetCount(0));
+  EXPECT_FALSE(bench_.hands().SetCount(HandRack::kMaxHands + 1));
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.hands().SetCount(2));
   ASSERT_TRUE(AwaitDevice(1, HandRack::kPointer, start));

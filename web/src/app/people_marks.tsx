@@ -28,8 +28,8 @@ function useAnchor(pointOf: () => Vec3 | null) {
 function Cursor({ id }: { id: string }) {
   const element = useAnchor(() => store.looking.value.get(id)?.p_m ?? null);
   return (
-    <div class="other-cursor" ref={element} hidden data-testid={`cursor-${id}`} style={{ "--person": colourOf(id) }} aria-hidden="true">
-      <span>{clientName(id)}</span>
+    <div class="other-cursor" ref={element} hidden style={{ "--person": colourOf(id) }} aria-hidden="true">
+      <span data-testid={`cursor-${id}`}>{clientName(id)}</span>
     </div>
   );
 }

@@ -2,7 +2,7 @@
 
 import { nowMs } from "../protocol/frame_store";
 import type { RoomHand } from "../view3d/vr/host";
-import { store, studio, ui, view, viewport } from "./app_state";
+import { leadsHand, store, studio, ui, view, viewport } from "./app_state";
 
 interface Seen {
   x: number;
@@ -158,6 +158,7 @@ export function exposeHooks(): void {
       isSilent: store.isSilent.value,
       role: store.role.value,
       hasLease: store.hasLease.value,
+      leadsHand: leadsHand(),
       hasScene: viewport.value?.product.parts != null && viewport.value.product.scene === store.scene.value,
       epoch: store.scene.value?.epoch ?? null,
       step: store.step.value,
