@@ -51,6 +51,7 @@ void HapticTick::Take(const HeldPart* part, std::span<const HandExchange> others
                                     [part](const FreeBody& body) { return body.id == part->body; });
     falling = found != other->awake.end() ? &*found : nullptr;
   }
+  StopHelping();
   displayed_.part = part;
   taken_ = part;
   displayed_.X_WD = falling != nullptr ? falling->X_WB : part->X_WB_start;
@@ -156,6 +157,33 @@ LetGo HapticTick::Drop() noexcept {
   return drop;
 }
 
+void HapticTick::Help(const HandExchange& other) noexcept {
+  helped_hand_ = other.hand;
+  helped_hold_ = other.is_holding() ? other.hold : 0;
+  has_engaged_ = true;
+  coupling_.Begin();
+}
+
+const DisplayedPart* HapticTick::FindHelped(std::span<const HandExchange> others) const noexcept {
+  const auto found = std::find_if(others.begin(), others.end(), [this](const HandExchange& other) {
+    return other.hand == helped_hand_ && other.is_holding() && other.hold == helped_hold_;
+  });
+  return is_helping() && found != others.end() ? &found->displayed : nullptr;
+}
+
+void HapticTick::HoldAlong(const DisplayedPart& displayed, TickOutput* out) noexcept {
+  out->X_WT = coupling_.Track(hand_, displayed).X_WT;
+  out->F_felt_W = coupling_.CalcWrench(displayed);
+  out->F_true_W = out->F_felt_W;
+  FeelAtHand(*displayed.part, out);
+  F_help_W_ = {-out->F_felt_W.t, -out->F_felt_W.f};
+}
+
+void HapticTick::FeelAtHand(const HeldPart& part, TickOutput* out) const noexcept {
+  out->F_H_W = out->F_felt_W;
+  out->F_H_W.t += (out->X_WT * part.p_BoBcm_B - hand_.X_WH.p()).cross(out->F_felt_W.f);
+}
+
 HandExchange HapticTick::Exchange(std::size_t to) const noexcept {
   HandExchange exchange;
   exchange.displayed = displayed_;
@@ -163,6 +191,11 @@ HandExchange HapticTick::Exchange(std::size_t to) const noexcept {
   exchange.hold = hold_;
   exchange.response = response_;
   contacts_.FillExchange(to, &exchange);
+  if (is_helping() && to == helped_hand_) {
+    exchange.F_pushed_W.t += F_help_W_.t;
+    exchange.F_pushed_W.f += F_help_W_.f;
+    exchange.pushed_hold = helped_hold_;
+  }
   return exchange;
 }
 
@@ -181,18 +214,22 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     ChoosePlace(others);
   }
   const HeldPart* part = displayed_.part;
+  const DisplayedPart* helped = FindHelped(others);
+  helped_hold_ = helped != nullptr ? helped_hold_ : 0;
   contacts_.Begin(part, others);
   response_ = {};
+  F_help_W_ = {};
   out.X_WH = hand_.X_WH;
   out.X_WT = hand_.X_WH;
   out.X_WD = hand_.X_WH;
   if (part != nullptr && is_usable) {
     out.X_WT = coupling_.Track(hand_, displayed_).X_WT;
     Hold(!others.empty(), &out);
-    // About the hand's point: the coupling acts at the centre of mass.
-    out.F_H_W = out.F_felt_W;
-    out.F_H_W.t += (out.X_WT * part->p_BoBcm_B - hand_.X_WH.p()).cross(out.F_felt_W.f);
+    FeelAtHand(*part, &out);
   } else {
+    if (helped != nullptr && is_usable) {
+      HoldAlong(*helped, &out);
+    }
     contacts_.StepFreeBodies(&solver_);
   }
   if (part != nullptr) {
@@ -201,9 +238,12 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
     if (!others.empty()) {
       contacts_.MoveInScene(*part, displayed_.X_WD);
     }
+  } else if (helped != nullptr) {
+    out.occurrence = helped->part->occurrence;
+    out.X_WD = helped->X_WD;
   }
   static_cast<ContactAccount&>(out) = contacts_.End();
-  out.state = state_;
+  out.state = helped != nullptr ? HoldState::kFree : state_;
   out.workspace = workspace_.mapping();
   DeviceOutput::Input input;
   input.F_H_W = out.F_H_W;
@@ -212,6 +252,9 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   if (part != nullptr) {
     input.stored = CalcStoredEnergy();
     input.stored_turning = coupling_.CalcTurningEnergy(displayed_);
+  } else if (helped != nullptr) {
+    input.stored = coupling_.CalcEnergy(*helped) / options_.workspace.mapping.scale;
+    input.stored_turning = coupling_.CalcTurningEnergy(*helped);
   }
   out.F_H_D = output_.Pass(state, context, workspace_, input);
   out.F_H_W = {out.workspace.X_WD.q() * out.F_H_D.t, out.workspace.X_WD.q() * out.F_H_D.f};

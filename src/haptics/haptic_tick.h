@@ -81,6 +81,17 @@ class HapticTick {
    @param others  What the other hands gave. RT-safe. */
   void Take(const HeldPart* part, std::span<const HandExchange> others = {}) noexcept;
 
+  /** Takes hold of what another hand holds as well: both are coupled to it, and each feels what it
+   gives. The other hand's weight, mates and contact stay with it. Ends when that hand lets go.
+   @pre this hand holds nothing.
+   @param other  What that hand gave. RT-safe. */
+  void Help(const HandExchange& other) noexcept;
+
+  /** Lets go of what another hand holds. RT-safe. */
+  void StopHelping() noexcept { helped_hold_ = 0; }
+
+  [[nodiscard]] bool is_helping() const noexcept { return helped_hold_ != 0; }
+
   /** The held part has come into its place, in the product or on the table, or has not left it yet.
    */
   [[nodiscard]] bool is_in_place() const noexcept {
@@ -120,6 +131,13 @@ class HapticTick {
   [[nodiscard]] double CalcFeltWeight(const HeldPart& part) const noexcept;
   void CreditWeight() noexcept;
   [[nodiscard]] double CalcStoredEnergy() const noexcept;
+  /** Finds the part of another hand that this one holds as well; null: none. */
+  [[nodiscard]] const DisplayedPart* FindHelped(
+      std::span<const HandExchange> others) const noexcept;
+  /** A tick of a hand that holds what another hand holds. */
+  void HoldAlong(const DisplayedPart& displayed, TickOutput* out) noexcept;
+  /** Moves the felt wrench to the hand's point: the coupling acts at the centre of mass. */
+  void FeelAtHand(const HeldPart& part, TickOutput* out) const noexcept;
   /** @param has_others  Whether the scene has other hands. */
   void Hold(bool has_others, TickOutput* out) noexcept;
   void Step(bool has_others, TickOutput* out) noexcept;
@@ -146,6 +164,9 @@ class HapticTick {
   double weight_felt_{0};           ///< [N]
   bool has_engaged_{false};         ///< A part was taken or a mate captured since the last tick.
   HeldResponse response_;
+  std::size_t helped_hand_{0};    ///< Hand whose part this one holds as well.
+  std::uint32_t helped_hold_{0};  ///< That hold of it; 0: none.
+  spatial::Wrench F_help_W_;      ///< Wrench of the last tick on that part, at its centre of mass.
 };
 
 }  // namespace hvas::haptics

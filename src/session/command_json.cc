@@ -162,7 +162,6 @@ Result<std::vector<PartState>> ParseParts(const Json& json) {
 }
 
 record::Command MakeCommand(const GivenCommand& given, const std::vector<PartState>& before) {
-  const bool is_take = given.kind == simulation::TickCommand::Kind::kTake;
   Json changed = Json::array();
   for (std::size_t i = 0; i < given.parts.size(); ++i) {
     if (!IsSame(given.parts[i], before[i])) {
@@ -176,7 +175,11 @@ record::Command MakeCommand(const GivenCommand& given, const std::vector<PartSta
   if (given.can_join) {
     json["can_join"] = true;
   }
-  return {given.t_ns, given.number, is_take ? kTakeKind : kPlaceKind, json.dump()};
+  if (given.kind == simulation::TickCommand::Kind::kHelp) {
+    json["other"] = given.other;
+  }
+  return {given.t_ns, given.number, kCommandKinds.at(static_cast<std::size_t>(given.kind)),
+          json.dump()};
 }
 
 Result<GivenCommand> ParseCommand(const record::Command& command,
@@ -187,12 +190,15 @@ Result<GivenCommand> ParseCommand(const record::Command& command,
   GivenCommand given;
   given.number = static_cast<std::uint32_t>(command.number);
   given.t_ns = command.t_ns;
-  if (command.kind != kTakeKind && command.kind != kPlaceKind) {
+  const auto kind = std::find(kCommandKinds.begin(), kCommandKinds.end(), command.kind);
+  if (kind == kCommandKinds.end()) {
     return Refuse(what, "kind");
   }
-  given.kind = command.kind == kTakeKind ? simulation::TickCommand::Kind::kTake
-                                         : simulation::TickCommand::Kind::kPlace;
+  given.kind = static_cast<simulation::TickCommand::Kind>(kind - kCommandKinds.begin());
   fields.Index("hand", hands, &given.hand);
+  if (given.kind == simulation::TickCommand::Kind::kHelp) {
+    fields.Index("other", hands, &given.other);
+  }
   JsonFields step = fields.Inner("step");
   given.step = ReadStep(&step, before.size());
   fields.Take(step);

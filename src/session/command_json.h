@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,7 @@
 namespace hvas::session {
 
 inline constexpr const char* kBeginKind = "begin";
-inline constexpr const char* kTakeKind = "take";
-inline constexpr const char* kPlaceKind = "place";
+inline constexpr std::array kCommandKinds{"take", "place", "help"};  ///< Of TickCommand::Kind.
 
 /** How a stretch begins: each hand's options, and where all parts are. */
 struct Beginning {

@@ -107,6 +107,10 @@ void HapticSide::Apply(const TickCommand& command, std::int64_t t_ns) noexcept {
     ApplyTake(command, t_ns);
     return;
   }
+  if (command.kind == TickCommand::Kind::kHelp) {
+    hands_[command.hand].tick.Help(hands_[command.other].tick.Exchange(command.hand));
+    return;
+  }
   for (Hand& hand : hands_) {
     hand.tick.SetLoose(command.body, false);
   }
@@ -214,6 +218,9 @@ haptics::TickOutput HapticSide::RunTick(Hand* hand, const device::DeviceState& d
                                         const haptics::TickContext& context) noexcept {
   if (hand->tick.held() != nullptr && device.is_valid && !device.is_gripping) {
     LetGo(hand, device.t_ns);
+  }
+  if (device.is_valid && !device.is_gripping) {
+    hand->tick.StopHelping();
   }
   const haptics::TickOutput out = hand->tick.Tick(device, context, ListExchanges(*hand));
   UpdateMetrics(hand, device.t_ns, out);

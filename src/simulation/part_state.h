@@ -66,7 +66,8 @@ struct GivenCommand {
   std::uint32_t number{0};  ///< 1 for the first one since the simulation began.
   std::int64_t t_ns{0};     ///< Session time that physics had seen.
   TickCommand::Kind kind{TickCommand::Kind::kPlace};
-  std::size_t hand{0};           ///< The hand that takes.
+  std::size_t hand{0};           ///< The hand that takes, or helps.
+  std::size_t other{0};          ///< The hand that is helped.
   SequenceStep step;             ///< What is taken; of what is placed the occurrence alone.
   bool can_join{false};          ///< What is taken may be put to loose parts on the table.
   std::vector<PartState> parts;  ///< Indexed by OccurrenceId.

@@ -48,6 +48,7 @@ TickCommand PhysicsSide::RemakeCommand(const GivenCommand& given,
   TickCommand command;
   command.kind = given.kind;
   command.hand = given.hand;
+  command.other = given.other;
   if (given.kind == TickCommand::Kind::kTake) {
     Hand& hand = hands_[given.hand];
     *held_before = std::exchange(hand.held, maker_.Make(given.step, given.can_join));
@@ -86,6 +87,7 @@ void PhysicsSide::HandleReport(std::size_t index) {
   handover_.physics_t_ns.store(report.t_ns, std::memory_order_release);
   if (!report.is_gripping) {
     hand.is_waiting_for_grip_to_open = false;
+    hand.helps.reset();
   } else if (hand.held == nullptr && !hand.is_waiting_for_grip_to_open) {
     TakeNearest(index, report.out.X_WH.p());
   }
@@ -195,6 +197,13 @@ void PhysicsSide::HandleDrop(const SimulationEvent& event) {
     JoinParts(all, event.onto, &parts_);
   }
   hand.held = nullptr;
+  // Whoever held it as well has it alone now.
+  for (Hand& helper : hands_) {
+    if (helper.helps == event.hand) {
+      helper.helps.reset();
+      helper.is_waiting_for_grip_to_open = event.was_seated;
+    }
+  }
 }
 
 void PhysicsSide::PlaceInFixture(OccurrenceId id) {
@@ -217,7 +226,7 @@ void PhysicsSide::Send(const TickCommand& command, const SequenceStep& step, boo
   ++given_commands_;
   if (on_command_) {
     on_command_({given_commands_, handover_.physics_t_ns.load(std::memory_order_relaxed),
-                 command.kind, command.hand, step, can_join, parts_});
+                 command.kind, command.hand, command.other, step, can_join, parts_});
   }
   waiting_commands_.push_back(command);
   FlushCommands();
@@ -268,8 +277,34 @@ bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
   return is_free(step.occurrence) && std::all_of(step.members.begin(), step.members.end(), is_free);
 }
 
+bool PhysicsSide::TryHelp(std::size_t index, const Vec3& p_WH) {
+  const std::optional<std::size_t> other = std::exchange(hands_[index].helps_next, std::nullopt);
+  if (!other || hands_[*other].held == nullptr) {
+    return false;
+  }
+  const haptics::HeldPart& part = *hands_[*other].held;
+  const haptics::TickOutput& out = handover_.reports[*other].value().out;
+  const bool is_near = (out.X_WD * part.p_BoBcm_B - p_WH).norm() <= kReach;
+  if (out.occurrence != part.occurrence || !is_near) {
+    return false;
+  }
+  TickCommand command;
+  command.kind = TickCommand::Kind::kHelp;
+  command.hand = index;
+  command.other = *other;
+  SequenceStep step;
+  step.occurrence = part.occurrence;
+  Send(command, step, false);
+  hands_[index].helps = other;
+  hands_[index].is_waiting_for_grip_to_open = true;  // It takes nothing else meanwhile.
+  return true;
+}
+
 void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
   Hand& hand = hands_[index];
+  if (TryHelp(index, p_WH)) {
+    return;
+  }
   if (hand.prepared && CanTake(*hand.prepared, p_WH)) {
     Take(index, *hand.prepared);
     return;

@@ -62,6 +62,10 @@ class PhysicsSide {
    Parts that were not prepared go to their drawn place by their step of the sequence. */
   void Prepare(const SequenceStep& step, std::size_t hand = 0) { hands_[hand].prepared = step; }
 
+  /** Lets a hand take hold of what another hand holds as well, when it next closes within reach of
+   the middle of its mass. */
+  void PrepareHelp(std::size_t other, std::size_t hand) { hands_[hand].helps_next = other; }
+
   /** What a hand would have in it in this step, with the parts where they are now. */
   [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Describe(const SequenceStep& step) {
     return maker_.Make(step, false);
@@ -111,6 +115,8 @@ class PhysicsSide {
     std::shared_ptr<const haptics::HeldPart> held;  ///< Kept until haptics has let go of it.
     SequenceStep held_step;
     std::optional<SequenceStep> prepared;
+    std::optional<std::size_t> helps_next;  ///< Whose part it takes hold of next.
+    std::optional<std::size_t> helps;       ///< Whose part it has taken hold of.
     bool is_waiting_for_grip_to_open{false};
     bool takes_out{false};
     bool can_join{false};
@@ -118,7 +124,10 @@ class PhysicsSide {
     std::int64_t next_energy_ns{0};
   };
 
+  /** @param step  What is taken; of what is placed or held by two the occurrence alone. */
   void Send(const TickCommand& command, const SequenceStep& step, bool can_join);
+  /** @returns whether the hand takes hold of another one's part. */
+  bool TryHelp(std::size_t hand, const Vec3& p_WH);
   void FlushCommands();
   void HandleDrop(const SimulationEvent& event);
   void HandleReport(std::size_t hand);

@@ -12,8 +12,13 @@ namespace hvas::simulation {
 
 /** What the physics loop tells the tick. */
 struct TickCommand {
-  enum class Kind : std::uint8_t { kTake, kPlace } kind{Kind::kPlace};
-  std::size_t hand{0};  ///< That takes.
+  enum class Kind : std::uint8_t {
+    kTake,
+    kPlace,
+    kHelp,  ///< A hand takes hold of what another one holds as well.
+  } kind{Kind::kPlace};
+  std::size_t hand{0};   ///< That takes, or helps.
+  std::size_t other{0};  ///< That is helped.
   const haptics::HeldPart* part{nullptr};
   contact::BodyId body;
   spatial::Pose X_WB;

@@ -51,6 +51,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::CancelCommand>(&Hub::DoCancel),
       Entry<protocol::TakeCommand>(&Hub::DoTake),
       Entry<protocol::ReleaseCommand>(&Hub::DoRelease),
+      Entry<protocol::HelpCommand>(&Hub::DoHelp),
       Entry<protocol::HandOverCommand>(&Hub::DoHandOver),
       Entry<protocol::AskPartCommand>(&Hub::DoAskPart),
       Entry<protocol::HandsCommand>(&Hub::DoHands),
@@ -126,6 +127,11 @@ Result<Json> Hub::DoTake(const protocol::TakeCommand& command) {
 
 Result<Json> Hub::DoRelease(const protocol::ReleaseCommand& command) {
   return Done(workbench_->hands().Release(command.hand));
+}
+
+Result<Json> Hub::DoHelp(const protocol::HelpCommand& command) {
+  const auto taken = workbench_->hands().Help(command.hand, command.other);
+  return taken ? Result<Json>(ToJson(*taken)) : Result<Json>(Unexpected(taken.error()));
 }
 
 Result<Json> Hub::DoHandOver(const protocol::HandOverCommand& command) {

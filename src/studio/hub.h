@@ -136,6 +136,7 @@ class Hub {
   Result<Json> DoCancel();
   Result<Json> DoTake(const protocol::TakeCommand& command);
   Result<Json> DoRelease(const protocol::ReleaseCommand& command);
+  Result<Json> DoHelp(const protocol::HelpCommand& command);
   Result<Json> DoHandOver(const protocol::HandOverCommand& command);
   Result<Json> DoAskPart(const Caller& caller, const protocol::AskPartCommand& command);
   Result<Json> DoForces(const Caller& caller, const protocol::ForcesCommand& command);

@@ -151,6 +151,14 @@ void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
   });
 }
 
+void LiveRun::Help(std::size_t hand, std::size_t other, const spatial::Pose& X_WH) {
+  const std::lock_guard lock(mutex_);
+  tasks_.emplace_back([this, hand, other, X_WH] {
+    simulation_->physics().PrepareHelp(other, hand);
+    hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
+  });
+}
+
 void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
   const std::lock_guard lock(mutex_);
   const PointerInput input{MonotonicNs(), X_WH, is_gripping};

@@ -66,6 +66,10 @@ class LiveRun final : private simulation::Sink {
    @pre the hand follows a pointer. */
   void Take(std::size_t hand, const simulation::SequenceStep& step, const spatial::Pose& X_WH);
 
+  /** Moves a hand to what another one holds, and closes it there: both hold it then. Any thread may
+   call it. @pre both follow pointers. */
+  void Help(std::size_t hand, std::size_t other, const spatial::Pose& X_WH);
+
   /** Sets the pointer's target pose of a hand. Any thread may call it. */
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
 

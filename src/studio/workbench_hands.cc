@@ -1,5 +1,6 @@
 #include "studio/workbench_hands.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -119,13 +120,36 @@ Result<void> WorkbenchHands::Release(std::size_t hand) {
   return {};
 }
 
-Result<void> WorkbenchHands::HandOver(std::size_t from, std::size_t to) {
-  const auto run = FindRun(from);
+Result<TakenParts> WorkbenchHands::Help(std::size_t hand, std::size_t other) {
+  const auto run = FindPair(other, hand);
   if (!run) {
     return Unexpected(run.error());
   }
+  const simulation::Frame frame = live_->frame().frame;
+  const haptics::TickOutput& tick = frame.ticks[other];
+  const auto holds = [&tick](const haptics::TickOutput& each) {
+    return each.occurrence == tick.occurrence;
+  };
+  if (std::count_if(frame.ticks.begin(), frame.ticks.end(), holds) > 1) {
+    return Fail(ErrorCode::kInvalid, "two hands hold the part already",
+                fmt::format("hand {}", other), "wait until one of them lets go");
+  }
+  SequenceStep step;
+  step.occurrence = tick.occurrence;
+  step.members = frame.members[other];
+  const spatial::Pose X_WH(tick.X_WD *
+                           simulation::CombineMass((*run)->model(), step).p_BoBcm_B);
+  (*run)->Help(hand, other, X_WH);
+  return TakenParts{X_WH, step, {}};
+}
+
+Result<std::shared_ptr<LiveRun>> WorkbenchHands::FindPair(std::size_t from, std::size_t to) const {
+  auto run = FindRun(from);
+  if (!run) {
+    return run;
+  }
   if (const auto other = FindRun(to); !other) {
-    return Unexpected(other.error());
+    return other;
   }
   if (from == to || (*run)->is_holding(to)) {
     return Fail(ErrorCode::kInvalid, "the hand that is to take the part is not free",
@@ -136,7 +160,15 @@ Result<void> WorkbenchHands::HandOver(std::size_t from, std::size_t to) {
     return Fail(ErrorCode::kInvalid, "the hand holds nothing", fmt::format("hand {}", from),
                 "take a part first");
   }
-  (*run)->HandOver(from, to, ticks[from].occurrence);
+  return run;
+}
+
+Result<void> WorkbenchHands::HandOver(std::size_t from, std::size_t to) {
+  const auto run = FindPair(from, to);
+  if (!run) {
+    return Unexpected(run.error());
+  }
+  (*run)->HandOver(from, to, live_->frame().frame.ticks[from].occurrence);
   return {};
 }
 

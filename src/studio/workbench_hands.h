@@ -41,6 +41,9 @@ class WorkbenchHands final : public SceneObserver {
       simulation::TakeExtent extent = simulation::TakeExtent::kWhole);
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
   [[nodiscard]] Result<void> Release(std::size_t hand);
+  /** Takes hold, with a hand, of what another one holds as well. Errors: as of HandOver, and kInvalid
+   where a third hand has hold of it already. */
+  [[nodiscard]] Result<TakenParts> Help(std::size_t hand, std::size_t other);
   /** Passes what a hand holds into another one. Errors: kInvalid where the first one holds nothing,
    the second one holds something, or either has a device, whose grip is its user's. */
   [[nodiscard]] Result<void> HandOver(std::size_t from, std::size_t to);
@@ -72,6 +75,9 @@ class WorkbenchHands final : public SceneObserver {
   /** Finds the run, for a command to a hand that follows the pointer. Errors: those of
    LiveScene::FindRunForHands; kInvalid for a hand that is missing or has a device. */
   [[nodiscard]] Result<std::shared_ptr<LiveRun>> FindRun(std::size_t hand) const;
+  /** Finds the run, for what goes between two hands that follow pointers: `from` holds a part, `to`
+   holds nothing. Errors: those of FindRun; kInvalid where it is otherwise. */
+  [[nodiscard]] Result<std::shared_ptr<LiveRun>> FindPair(std::size_t from, std::size_t to) const;
   /** Checks whether the hands can be changed. Errors: those of LiveScene::CheckIdle, but none
    without a scene. */
   [[nodiscard]] Result<void> CheckChange() const;

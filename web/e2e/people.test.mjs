@@ -12,6 +12,7 @@ import {
   stateOf,
   takeByMouse,
   takePicture,
+  turnView,
   waitForPicture,
   waitForRest,
   waitForState,
@@ -85,10 +86,8 @@ it("people see each other's names and pointers, follow a view, pin notes, and th
   await closeDialog(host);
   await guest.evaluate(() => document.activeElement?.blur());
   await guest.keyboard.press("5");
-  await waitForState(guest, () => true);
   const eyeOf = async (page) => (await stateOf(page)).eye;
   await host.getByTestId("followed").waitFor();
-  await host.waitForFunction(() => document.querySelector('[data-testid="followed"]') !== null);
   const start = Date.now();
   for (;;) {
     const [a, b] = [await eyeOf(host), await eyeOf(guest)];
@@ -98,11 +97,7 @@ it("people see each other's names and pointers, follow a view, pin notes, and th
     assert.ok(Date.now() - start < 20_000, `the views differ: ${a} and ${b}`);
     await nextFrame(host);
   }
-  const canvas = await host.locator("canvas[role=application]").boundingBox();
-  await host.mouse.move(canvas.x + canvas.width / 2, canvas.y + 90);
-  await host.mouse.down({ button: "middle" });
-  await host.mouse.move(canvas.x + canvas.width / 2 + 60, canvas.y + 120, { steps: 4 });
-  await host.mouse.up({ button: "middle" });
+  await turnView(host, 40);
   await host.getByTestId("followed").waitFor({ state: "detached" });
 
   // A note of the guest is on the part that was clicked, for all.
@@ -128,7 +123,7 @@ it("people see each other's names and pointers, follow a view, pin notes, and th
   await waitForState(guest, ({ link }) => link === "denied");
 }));
 
-it("three people have a hand each, and hold a part each", withStudio(["../products/snap_joint.step"], async (studio) => {
+it("three people have a hand each, hold one part by two, and then a part each", withStudio(["../products/snap_joint.step"], async (studio) => {
   const pages = [];
   for (let n = 0; n < 3; n++) {
     const { page } = await openPage(browser, studio.operator);
@@ -140,7 +135,20 @@ it("three people have a hand each, and hold a part each", withStudio(["../produc
   }
   const scene = await fetchScene(pages[0]);
   const parts = scene.occurrences.filter(({ is_base: isBase }) => !isBase).slice(0, 3);
+  // The second one takes hold of what the first one has: both feel it, until the second one lets go.
+  await takeByMouse(pages[0], parts[0].id);
+  await pages[0].mouse.up();
+  await pages[1].getByTestId("hold-together").click();
+  await waitForState(pages[2], ({ hands }) => hands[0].occurrence === parts[0].id && hands[1].occurrence === parts[0].id);
+  await takePicture(pages[2], "two_people_hold");
+  await pages[1].evaluate(() => document.activeElement?.blur());
+  await pages[1].keyboard.press("r");
+  await waitForState(pages[2], ({ hands }) => hands[0].occurrence === parts[0].id && hands[1].state === 0);
+
   for (const [n, page] of pages.entries()) {
+    if (n === 0) {
+      continue; // It holds a part already.
+    }
     await takeByMouse(page, parts[n].id);
     await page.mouse.up();
     await waitForRest(page, parts[n].id);

@@ -203,7 +203,7 @@ TEST(CommandJson, BringsACommandBackFromWhatHasChanged) {
   given.parts[42] = {Placement::kPlaced, numbers.Place()};
   given.parts[17].X_WB = {given.parts[17].X_WB.q(), -0.0 * Vec3::Ones()};
   const record::Command command = MakeCommand(given, before);
-  EXPECT_EQ(command.kind, kTakeKind);
+  EXPECT_EQ(command.kind, "take");
   EXPECT_EQ(command.number, 7);
   EXPECT_LT(command.json.size(), 1000u) << "of parts only those that changed";
   const auto back = ParseCommand(command, before, 2);

@@ -81,6 +81,103 @@ TEST_P(ManyHandsTest, BlockBetweenTwoOthersIsPushedFromBothSides) {
 INSTANTIATE_TEST_SUITE_P(Orders, ManyHandsTest,
                          ::testing::Values(Row{0, 1, 2}, Row{1, 0, 2}, Row{2, 1, 0}));
 
+/** Two hands at one block, 10 cm above the table. */
+struct TwoAtOnePart : MovedHands {
+  TwoAtOnePart() : MovedHands(testing::MakeBlocks(2), 2) {
+    Take(0, OccurrenceId(0));
+    Run(1.0, {Vec3(0, 0, 0.1)});
+    Run(0.3);
+    Help(1, 0);
+  }
+};
+
+// X1: what either hand pulls, the other one bears.
+TEST(SharedHoldTest, HandsAtOnePartFeelEachOther) {
+  TwoAtOnePart hands;
+  EXPECT_EQ(hands.out[1].occurrence, OccurrenceId(0));
+  EXPECT_LT(hands.out[1].F_felt_W.f.norm(), 0.05) << "it was gripped where the hand was";
+  hands.Run(0.1, {Vec3(-0.02, 0, 0), Vec3(0.02, 0, 0)});
+  hands.Run(0.5);
+  const double expected = haptics::CouplingGains().k_lin * 2e-3;
+  EXPECT_NEAR(hands.out[0].F_felt_W.f.x(), expected, 0.01 * expected);
+  EXPECT_NEAR(hands.out[1].F_felt_W.f.x(), -expected, 0.01 * expected);
+  // Each bears half of the weight when the first hand goes down by as much as it hung below it.
+  const double weight = hands.out[0].F_felt_W.f.z() + hands.out[1].F_felt_W.f.z();
+  hands.Run(0.1, {Vec3(0, 0, -0.01)});
+  hands.Run(0.5);
+  EXPECT_NEAR(hands.out[0].F_felt_W.f.z() + hands.out[1].F_felt_W.f.z(), weight, 0.01);
+  EXPECT_LT(hands.out[1].F_felt_W.f.z(), -0.3) << "the second hand bears the first one's push";
+}
+
+TEST(SharedHoldTest, WhoHoldsOnHasThePartAloneWhenTheOtherOneLetsGo) {
+  TwoAtOnePart hands;
+  hands.states[1].is_gripping = false;
+  hands.Run(0.1);
+  EXPECT_FALSE(hands.out[1].occurrence.is_valid());
+  EXPECT_EQ(hands.out[0].occurrence, OccurrenceId(0)) << "the helper has let go";
+  hands.Help(1, 0);
+  const double height = hands.out[0].X_WD.p().z();
+  hands.states[0].is_gripping = false;
+  hands.Run(0.5);
+  EXPECT_FALSE(hands.out[0].occurrence.is_valid());
+  EXPECT_EQ(hands.out[1].occurrence, OccurrenceId(0));
+  EXPECT_EQ(hands.simulation.physics().placement(OccurrenceId(0)), Placement::kHeld);
+  EXPECT_GT(hands.out[1].X_WD.p().z(), height - 0.01) << "it has not fallen";
+}
+
+TEST(SharedHoldTest, OutOfReachOrWithoutAPartThereIsNothingToHold) {
+  MovedHands hands(testing::MakeBlocks(2), 2);
+  hands.simulation.physics().PrepareHelp(0, 1);
+  hands.PutHand(1, Vec3(0.3, 0.3, 0.3));
+  hands.Run(0.05);
+  hands.states[1].is_gripping = true;
+  hands.Run(0.1);
+  EXPECT_FALSE(hands.out[1].occurrence.is_valid());
+  hands.states[1].is_gripping = false;
+  hands.Run(0.05);
+  hands.Take(0, OccurrenceId(0));
+  hands.simulation.physics().PrepareHelp(0, 1);
+  hands.states[1].is_gripping = true;
+  hands.Run(0.1);
+  EXPECT_FALSE(hands.out[1].occurrence.is_valid()) << "it is 40 cm away";
+}
+
+TEST(SharedHoldTest, RandomHandlingByTwoStaysSafeAndRunsAgain) {
+  const auto model = testing::MakeBlocks(2);
+  MovedHands hands(model, 2);
+  TickLog log(100'000);
+  hands.simulation.KeepLog(&log);
+  hands.Take(0, OccurrenceId(0));
+  hands.Run(1.0, {Vec3(0, 0, 0.1)});
+  hands.Help(1, 0);
+  Random random(2);
+  const std::array p_first{hands.states[0].X_DH.p(), hands.states[1].X_DH.p()};
+  for (int i = 0; i < 200; ++i) {
+    std::vector<Vec3> v;
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      const Vec3 p_to =
+          p_first[hand] +
+          0.01 * Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1));
+      v.push_back((p_to - hands.states[hand].X_DH.p()) / 0.1);
+    }
+    hands.Run(0.1, v);
+  }
+  hands.Run(0.5);
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    EXPECT_TRUE(hands.watches[hand].is_finite);
+    EXPECT_EQ(hands.out[hand].occurrence, OccurrenceId(0)) << "both still hold it";
+    EXPECT_LE(hands.watches[hand].largest_force,
+              hands.simulation.options(hand).device.max_force + 1e-9);
+  }
+  // At rest the two springs and the weight balance.
+  const Vec3 sum = hands.out[0].F_true_W.f + hands.out[1].F_true_W.f;
+  EXPECT_LT(Vec3(sum.x(), sum.y(), 0).norm(), 1e-3);
+  Simulation again(model, std::vector<haptics::TickOptions>(2));
+  for (std::size_t i = 0; i < log.tick_count(); ++i) {
+    ASSERT_EQ(again.haptics().ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
+  }
+}
+
 // N9: eight people move at random among each other, and every tick runs again.
 TEST(EightHandsTest, RandomHandlingStaysSafeAndRunsAgain) {
   constexpr std::size_t kHands = haptics::kMaxHands;

@@ -69,6 +69,16 @@ class MovedHands {
     Run(0.5);
   }
 
+  /** Takes hold of what another hand has as well. */
+  void Help(std::size_t hand, std::size_t other) {
+    simulation.physics().PrepareHelp(other, hand);
+    PutHand(hand, out[other].X_WD *
+                      simulation.model().bodies[out[other].occurrence.index()].mass.p_BoBcm_B);
+    Run(0.05);
+    states[hand].is_gripping = true;
+    Run(0.1);
+  }
+
   Simulation simulation;
   std::vector<device::DeviceState> states;
   std::vector<haptics::TickOutput> out;

@@ -18,6 +18,7 @@ export const dePeople: Record<keyof typeof enPeople, string> = {
   "people.ended": "Die Freigabe ist beendet: Die anderen sind nicht mehr hier, und ihre Links sind ungültig.",
   "people.handAsked": "{name} möchte mit einer eigenen Hand mitarbeiten (Hand {n}).",
   "people.controlAsked": "{name} bittet um die Steuerung.",
+  "action.holdTogether": "Zusammen halten",
   "action.note": "Notiz an das Teil heften…",
   "note.title": "Notiz anheften",
   "note.text": "Notiz zu {part}",

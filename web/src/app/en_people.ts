@@ -16,6 +16,7 @@ export const enPeople = {
   "people.ended": "The sharing has ended: the others have left, and their links are invalid.",
   "people.handAsked": "{name} would like to join with a hand of their own (hand {n}).",
   "people.controlAsked": "{name} asks for control.",
+  "action.holdTogether": "Hold it together",
   "action.note": "Pin a note to the part…",
   "note.title": "Pin a note",
   "note.text": "Note on {part}",

@@ -66,8 +66,13 @@ export function HandOverButton() {
   }
   const part = partName(heldIn(from)!.occurrence);
   return (
-    <button type="button" class="hint-button" data-testid="ask-part" onClick={() => void askFor(from, part)}>
-      {t("action.askPart", { part })}
-    </button>
+    <>
+      <button type="button" class="hint-button" data-testid="ask-part" onClick={() => void askFor(from, part)}>
+        {t("action.askPart", { part })}
+      </button>
+      <button type="button" class="hint-button" data-testid="hold-together" onClick={() => void viewport.value?.hand.holdTogether(to, from)}>
+        {t("action.holdTogether")}
+      </button>
+    </>
   );
 }

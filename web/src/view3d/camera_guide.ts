@@ -92,8 +92,8 @@ export class CameraGuide {
 
   /** Neither in a study nor in a recording, whose eye is the user's own. */
   private get isWanted(): boolean {
-    const { study, replay } = this.studio.store;
-    return this.view.followsSteps.peek() && study.peek() === null && replay.peek() === null;
+    const { study, replay, followed } = this.studio.store;
+    return this.view.followsSteps.peek() && study.peek() === null && replay.peek() === null && followed.peek() === null;
   }
 
   private listPlaced(): number[] {

@@ -8,7 +8,7 @@ import type { Studio } from "../model/studio";
 import type { ViewState } from "../model/view_state";
 import { kMaxHands, type LiveState } from "../protocol/frame_store";
 import type { HandInput } from "../protocol/frames";
-import type { TablePlace } from "../protocol/messages";
+import type { Command, Scene, TablePlace } from "../protocol/messages";
 import { Lifetime } from "./lifetime";
 import { MouseHand, type Eye } from "./mouse_hand";
 import type { SceneView } from "./scene_view";
@@ -105,14 +105,32 @@ export class HandControl {
     if (part === null || scene === null || !this.canTake(occurrence)) {
       return false;
     }
-    const { hand, mouse } = this.led[this.view.hand.peek()]!;
+    const hand = this.view.hand.peek();
     this.view.explode.value = 0;
     this.view.apart.value = null;
-    const taken = this.isLeftInHand(occurrence) ? this.takeOver(hand) : await this.takeUp(hand, part.id, isAlone);
+    const taken = this.isLeftInHand(occurrence)
+      ? this.takeOver(hand)
+      : await this.takeUp({ command: "take", hand, occurrence, ...(isAlone ? { alone: true } : {}) }, occurrence);
+    return this.lead(hand, scene, taken);
+  }
+
+  /** Takes hold of what another hand holds as well. @return Whether both hold it now. */
+  async holdTogether(hand: number, other: number): Promise<boolean> {
+    const held = this.studio.store.held.peek().find((each) => each.hand === other);
+    const scene = this.product.scene;
+    if (held === undefined || scene === null) {
+      return false;
+    }
+    this.view.hand.value = hand;
+    return this.lead(hand, scene, await this.takeUp({ command: "help", hand, other }, held.occurrence));
+  }
+
+  private lead(hand: number, scene: Scene, taken: Taken | null): boolean {
     const led = taken === null ? null : this.product.occurrence(taken.occurrence);
     if (taken === null || led === null) {
       return false;
     }
+    const { mouse } = this.led[hand]!;
     const { members, tablePlaces, X_WB, X_WH } = taken;
     const own = scene.steps.find((s) => s.occurrence === led.id && s.kind === "insert") ?? null;
     const step = own === null ? null : { ...own, members };
@@ -122,10 +140,10 @@ export class HandControl {
     return true;
   }
 
-  private async takeUp(hand: number, occurrence: number, isAlone: boolean): Promise<Taken | null> {
+  private async takeUp(command: Extract<Command, { command: "take" | "help" }>, occurrence: number): Promise<Taken | null> {
     this.isTaking = true;
     const lying = new Map(togetherWith(this.studio.store.leaders.peek(), occurrence).map((id) => [id, this.lyingAt(id)]));
-    const answer = await this.studio.command({ command: "take", hand, occurrence, ...(isAlone ? { alone: true } : {}) });
+    const answer = await this.studio.command(command);
     this.isTaking = false;
     if (answer === null) {
       return null;

@@ -22,17 +22,16 @@ export class SharedEyes {
   private toldAt = 0;
   private readonly life = new Lifetime();
   private readonly stopFrames: () => void;
-  private readonly stopFollowing = () => (this.studio.store.followed.value = null);
+  /** What the eye was given last of the view that is followed; null: nothing yet. */
+  private given: readonly number[] | null = null;
 
   constructor(
     private readonly viewport: Viewport,
     private readonly studio: Studio,
   ) {
-    const { canvas, rig } = viewport;
+    const { canvas } = viewport;
     this.life.listen<PointerEvent>(canvas, "pointermove", ({ offsetX, offsetY }) => (this.at = { x: offsetX, y: offsetY }));
     this.life.listen(canvas, "pointerleave", () => (this.at = null));
-    // Whoever moves the eye wants to look for himself.
-    rig.controls.addEventListener("controlstart", this.stopFollowing);
     this.stopFrames = viewport.onFrame((_live, now) => {
       this.follow();
       this.tell(now);
@@ -41,16 +40,24 @@ export class SharedEyes {
 
   dispose(): void {
     this.stopFrames();
-    this.viewport.rig.controls.removeEventListener("controlstart", this.stopFollowing);
     this.life.end();
   }
 
   private follow(): void {
     const { followed, looking } = this.studio.store;
     const seen = followed.peek() === null ? undefined : looking.peek().get(followed.peek()!);
+    if (seen === undefined) {
+      this.given = null;
+      return;
+    }
     const { eye, target } = this.viewport.rig.pose();
-    if (seen !== undefined && (differs(seen.eye_m, eye) || differs(seen.target_m, target))) {
+    const now = [...eye, ...target];
+    const wanted = [...seen.eye_m, ...seen.target_m];
+    if (this.given !== null && differs(now, this.given)) {
+      followed.value = null; // Whoever moves the eye wants to look for himself.
+    } else if (differs(now, wanted)) {
       this.viewport.rig.setPose(seen.eye_m, seen.target_m);
+      this.given = wanted;
       this.viewport.invalidate();
     }
   }
