@@ -12,7 +12,7 @@ import {
   stateOf,
   takeByMouse,
   takePicture,
-  turnView,
+  turnViewByKeys,
   waitForPicture,
   waitForRest,
   waitForState,
@@ -97,7 +97,7 @@ it("people see each other's names and pointers, follow a view, pin notes, and th
     assert.ok(Date.now() - start < 20_000, `the views differ: ${a} and ${b}`);
     await nextFrame(host);
   }
-  await turnView(host, 40);
+  await turnViewByKeys(host, 40);
   await host.getByTestId("followed").waitFor({ state: "detached" });
 
   // A note of the guest is on the part that was clicked, for all.

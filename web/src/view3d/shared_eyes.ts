@@ -55,10 +55,11 @@ export class SharedEyes {
     const wanted = [...seen.eye_m, ...seen.target_m];
     if (this.given !== null && differs(now, this.given)) {
       followed.value = null; // Whoever moves the eye wants to look for himself.
-    } else if (differs(now, wanted)) {
+    } else if (this.given === null || differs(now, wanted)) {
       this.viewport.rig.setPose(seen.eye_m, seen.target_m);
-      this.given = wanted;
       this.viewport.invalidate();
+      const given = this.viewport.rig.pose();
+      this.given = [...given.eye, ...given.target];
     }
   }
 
