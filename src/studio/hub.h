@@ -45,7 +45,8 @@ struct Example {
 class Hub {
  public:
   static constexpr std::size_t kMaxClients = 16;  ///< Pages that see one scene: a choice.
-  static constexpr std::size_t kMaxUnseen = 2;    ///< Frame messages not yet acknowledged.
+  /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second. */
+  static constexpr std::size_t kMaxUnseen = 8;
   /** Sustained rate for one client (token bucket). */
   static constexpr double kCommandsPerSecond = 50;
   static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.

@@ -33,7 +33,7 @@ async function runClient({ url, origin, cookie, leads }) {
   let bytes = 0;
   let newestNs = null;
   let pose = null;
-  const base = {};
+  let seq = 0;
   socket.on("message", (data, isBinary) => {
     bytes += data.length;
     if (!isBinary) {
@@ -53,15 +53,15 @@ async function runClient({ url, origin, cookie, leads }) {
         const from = at + kHeader + 24 + 3 * 28;
         forces.push([0, 1, 2].map((k) => data.readFloatLE(from + 4 * k)));
       }
-      base.seq = data.readUInt32LE(at + 12);
+      seq = data.readUInt32LE(at + 12);
     }
-    const credit = Buffer.alloc(kHeader + 8);
+    const credit = Buffer.alloc(kHeader + 4);
     credit.write("HVAS", 0, "latin1");
     credit.writeUInt16LE(1, 4);
     credit.writeUInt16LE(17, 6);
     credit.writeUInt32LE(credit.length, 8);
     credit.writeUInt32LE(1, 20);
-    credit.writeUInt32LE(base.seq, kHeader);
+    credit.writeUInt32LE(seq, kHeader);
     socket.send(credit);
   });
   await once(socket, "open");
@@ -142,6 +142,7 @@ async function waitForScene(studio, cookie) {
 async function runInNamespace(who) {
   const child = spawn("ip", ["netns", "exec", kNamespace, process.execPath, fileURLToPath(import.meta.url), "--client", JSON.stringify(who)], {
     stdio: ["ignore", "pipe", "inherit"],
+    env: { ...process.env, NODE_NO_WARNINGS: "1" },
   });
   let text = "";
   child.stdout.on("data", (data) => (text += data));
