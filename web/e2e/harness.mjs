@@ -190,9 +190,10 @@ export function copyToTemporary(files) {
 }
 
 /** Without a graphics processor; smooth edges would make each picture take twice as long. */
-export function launchBrowser() {
-  const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none"];
-  return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing] });
+export function launchBrowser({ isSmooth = false } = {}) {
+  const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+  const edges = isSmooth ? [] : ["--webgl-antialiasing-mode=none"];
+  return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing, ...edges] });
 }
 
 /** The browser of a file of tests that calls shareBrowser(). @type {import("playwright-core").Browser} */
