@@ -218,7 +218,7 @@ export async function openPage(browser, link, { beforeLoad = null, isPlain = tru
   const context = await browser.newContext({ viewport, reducedMotion, ...options });
   const page = await context.newPage();
   if (isPlain) {
-    await page.addInitScript(prefer, { quality: "low" });
+    await page.addInitScript(prefer, { quality: "low", guidesFirstPart: false });
   }
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));

@@ -59,6 +59,8 @@ export function makeViewState() {
     drawsWorkshop: computed(() => showsWorkshop.value && (quality.value === "high" || (quality.value === "auto" && isFast.value && !isSlow.value))),
     /** The eye moves to the next part and its place by itself. */
     followsSteps: signal(true),
+    /** Three hints lead through the first part: until one has been put in by hand. */
+    guidesFirstPart: signal(true),
     /** Somebody puts things onto the bench or away. */
     editsBench: signal(false),
     /** What stands on the bench; null: as at first. */
