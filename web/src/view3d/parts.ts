@@ -10,12 +10,16 @@ import {
   MeshStandardMaterial,
   Quaternion,
   Vector3,
+  Vector4,
   type Plane,
   type Ray,
 } from "three";
-import type { Pose } from "../protocol/messages";
+import { encodeFinish, finishOf, kPlainFinish } from "../model/finish";
+import type { Pose, Scene } from "../protocol/messages";
+import { ContactShadows } from "./contact_shadows";
 import { EdgeBatch } from "./edge_batch";
 import { raycastPart, type PartShape } from "./part_shape";
+import { makePartMaterial, setRoomLight } from "./room_light";
 
 /** Beyond this many vertices of edges a scene is drawn without. */
 const kMostEdgeTriangles = 900_000;
@@ -38,6 +42,8 @@ interface Entry {
   shape: PartShape;
   matrix: Matrix4;
   look: PartLook;
+  /** By encodeFinish(). */
+  finish: number;
 }
 
 export interface PickHit {
@@ -76,14 +82,7 @@ export class Parts {
   private readonly byOccurrence = new Map<number, Entry>();
   private readonly solid: BatchedMesh;
   private ghost: BatchedMesh | null = null;
-  private readonly material = new MeshStandardMaterial({
-    vertexColors: true,
-    roughness: 0.5,
-    metalness: 0.12,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  private readonly material = makePartMaterial();
   private readonly ghostMaterial = new MeshStandardMaterial({
     vertexColors: true,
     roughness: 0.6,
@@ -92,6 +91,7 @@ export class Parts {
     depthWrite: false,
   });
   readonly edges: EdgeBatch | null;
+  private readonly shadows: ContactShadows;
 
   constructor(shapes: ReadonlyMap<number, PartShape>) {
     this.entries = [...shapes].map(([occurrence, shape], instance) => ({
@@ -100,6 +100,7 @@ export class Parts {
       shape,
       matrix: new Matrix4(),
       look: kPlain,
+      finish: encodeFinish(kPlainFinish),
     }));
     for (const entry of this.entries) {
       this.byOccurrence.set(entry.occurrence, entry);
@@ -108,7 +109,8 @@ export class Parts {
     this.solid = makeBatch(all, this.material);
     this.solid.sortObjects = false;
     this.solid.castShadow = this.solid.receiveShadow = true;
-    this.root.add(this.solid);
+    this.shadows = new ContactShadows(this.entries.length);
+    this.root.add(this.solid, this.shadows.object);
     const triangles = [...new Set(all)].reduce((n, s) => n + s.index.length / 3, 0);
     this.edges = triangles <= kMostEdgeTriangles ? new EdgeBatch(all) : null;
     if (this.edges !== null) {
@@ -127,6 +129,18 @@ export class Parts {
     return this.byOccurrence.get(occurrence)?.matrix ?? null;
   }
 
+  /** Takes materials and the table's height from a scene. */
+  setScene({ occurrences, table_z_m: table }: Scene): void {
+    this.shadows.setTable(table);
+    for (const { id, material } of occurrences) {
+      const entry = this.byOccurrence.get(id);
+      if (entry !== undefined) {
+        entry.finish = encodeFinish(finishOf(material));
+        this.apply(entry);
+      }
+    }
+  }
+
   setPose(occurrence: number, pose: Pose): void {
     const entry = this.byOccurrence.get(occurrence);
     if (entry === undefined) {
@@ -136,6 +150,7 @@ export class Parts {
     this.solid.setMatrixAt(entry.instance, entry.matrix);
     this.ghost?.setMatrixAt(entry.instance, entry.matrix);
     this.setEdges(entry);
+    this.setShadow(entry);
   }
 
   setLook(occurrence: number, look: PartLook): void {
@@ -146,9 +161,11 @@ export class Parts {
     }
   }
 
-  setEdgesShown(isShown: boolean): void {
+  /** @param hasRoom  Metals reflect a room. */
+  setDrawn(hasEdges: boolean, hasRoom: boolean): void {
+    setRoomLight(this.material, hasRoom);
     if (this.edges !== null) {
-      this.edges.object.visible = isShown;
+      this.edges.object.visible = hasEdges;
     }
   }
 
@@ -203,6 +220,7 @@ export class Parts {
     this.solid.dispose();
     this.ghost?.dispose();
     this.edges?.dispose();
+    this.shadows.dispose();
     this.material.dispose();
     this.ghostMaterial.dispose();
     for (const shape of new Set(this.entries.map((e) => e.shape))) {
@@ -219,11 +237,16 @@ export class Parts {
     if (look.tint !== null) {
       color.lerp(look.tint, look.amount);
     }
-    this.solid.setColorAt(instance, color);
+    this.solid.setColorAt(instance, new Vector4(color.r, color.g, color.b, entry.finish));
     this.solid.setVisibleAt(instance, !look.isHidden && !look.isGhost);
     this.ghost?.setColorAt(instance, color);
     this.ghost?.setVisibleAt(instance, !look.isHidden && look.isGhost);
     this.setEdges(entry);
+    this.setShadow(entry);
+  }
+
+  private setShadow({ instance, shape, matrix, look }: Entry): void {
+    this.shadows.place(instance, shape.box, matrix, !look.isHidden && !look.isGhost);
   }
 
   private setEdges(entry: Entry): void {
