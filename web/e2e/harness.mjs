@@ -309,6 +309,33 @@ export async function findBarriers(page) {
   return found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html}`);
 }
 
+/** What can be pressed or filled in and is not wholly on the screen, as far as it cannot be scrolled to; and whether the page
+ is wider than its window. */
+export function findOutside(page) {
+  return page.evaluate(() => {
+    const scrolls = (element) => /auto|scroll/.test(getComputedStyle(element).overflow);
+    const isScrolled = (element) => element !== null && (scrolls(element) || isScrolled(element.parentElement));
+    const all = [...document.querySelectorAll("button, a, input, select, [tabindex='0']")];
+    const outside = all.filter((element) => {
+      const { left, right, top, bottom, width, height } = element.getBoundingClientRect();
+      const isIn = left >= -0.5 && top >= -0.5 && right <= innerWidth + 0.5 && bottom <= innerHeight + 0.5;
+      return width > 0 && height > 0 && element.checkVisibility() && !isIn && !isScrolled(element.parentElement);
+    });
+    const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
+    return [...wide, ...outside.map((element) => element.outerHTML.slice(0, 200))];
+  });
+}
+
+/** How a page may be seen otherwise than by default: in German, in the colours of the system, and twice as large.
+ @param viewport  Of the page as it is not enlarged. */
+export function waysToSee({ width, height }) {
+  return {
+    German: { locale: "de-DE" },
+    "forced colours": { forcedColors: "active" },
+    "German at 200 %": { locale: "de-DE", deviceScaleFactor: 2, viewport: { width: width / 2, height: height / 2 } },
+  };
+}
+
 export function stateOf(page) {
   return page.evaluate(() => window.hvas.state());
 }

@@ -8,6 +8,7 @@ import {
   dropFile,
   fetchScene,
   findBarriers,
+  findOutside,
   insertByMouse,
   openPage,
   poseOf,
@@ -19,6 +20,7 @@ import {
   waitForPicture,
   waitForPlacement,
   waitForState,
+  waysToSee,
   withStudio,
 } from "./harness.mjs";
 
@@ -197,5 +199,18 @@ describe("everybody", () => {
       await takePicture(page, colorScheme);
     }
     await page.context().close();
+  }));
+
+  it("can use it in German, in forced colours and at 200 %: nothing is out of the screen", withStudio([kBushing], async (studio) => {
+    const viewport = { width: 1280, height: 720 };
+    for (const [way, changes] of Object.entries(waysToSee(viewport))) {
+      const { page } = await openPage(browser, studio.viewer, { viewport, ...changes });
+      await waitForPicture(page);
+      await waitForCalm(page);
+      assert.deepEqual(await findBarriers(page), [], way);
+      assert.deepEqual(await findOutside(page), [], way);
+      await takePicture(page, `desk_${way}`.replaceAll(/[ %]+/g, "_"));
+      await page.context().close();
+    }
   }));
 });
