@@ -2,6 +2,7 @@
 
 import {
   BatchedMesh,
+  type BufferGeometry,
   Color,
   DoubleSide,
   FrontSide,
@@ -16,6 +17,7 @@ import {
 } from "three";
 import { encodeFinish, finishOf, kPlainFinish } from "../model/finish";
 import type { Pose, Scene } from "../protocol/messages";
+import { makeCoarse } from "./coarse_shape";
 import { ContactShadows } from "./contact_shadows";
 import { EdgeBatch } from "./edge_batch";
 import { raycastPart, type PartShape } from "./part_shape";
@@ -44,6 +46,8 @@ interface Entry {
   look: PartLook;
   /** By encodeFinish(). */
   finish: number;
+  /** It is small in the picture. */
+  isSmall: boolean;
 }
 
 export interface PickHit {
@@ -56,6 +60,7 @@ export interface PickHit {
 const kUnit = new Vector3(1, 1, 1);
 const position = new Vector3();
 const turn = new Quaternion();
+const middle = new Vector3();
 
 export function toMatrix(pose: Pose, out: Matrix4): Matrix4 {
   position.set(...pose.p);
@@ -63,10 +68,16 @@ export function toMatrix(pose: Pose, out: Matrix4): Matrix4 {
   return out.compose(position, turn, kUnit);
 }
 
-function makeBatch(shapes: readonly PartShape[], material: MeshStandardMaterial): BatchedMesh {
+/** A part of a smaller diameter than this is drawn coarsely, and without edges [px]; once it is, until it is larger than
+ `kLarge`. Choices, made by eye on the picture of 582 parts: with 28 px its screws had lost their outlines. */
+const kSmall = 18;
+const kLarge = 22;
+
+function makeBatch(shapes: readonly PartShape[], material: MeshStandardMaterial, coarse: readonly BufferGeometry[] = []): BatchedMesh {
   const distinct = [...new Set(shapes)];
-  const vertices = distinct.reduce((n, s) => n + s.positions.length / 3, 0);
-  const indices = distinct.reduce((n, s) => n + s.index.length, 0);
+  const more = (count: (g: BufferGeometry) => number) => coarse.reduce((n, g) => n + count(g), 0);
+  const vertices = distinct.reduce((n, s) => n + s.positions.length / 3, 0) + more((g) => g.getAttribute("position").count);
+  const indices = distinct.reduce((n, s) => n + s.index.length, 0) + more((g) => g.index!.count);
   const batch = new BatchedMesh(shapes.length, vertices, indices, material);
   const ids = new Map(distinct.map((shape) => [shape, batch.addGeometry(shape.geometry)]));
   for (const shape of shapes) {
@@ -81,6 +92,7 @@ export class Parts {
   readonly entries: readonly Entry[];
   private readonly byOccurrence = new Map<number, Entry>();
   private readonly solid: BatchedMesh;
+  private readonly geometries = new Map<PartShape, { fine: number; coarse: number }>();
   private ghost: BatchedMesh | null = null;
   private readonly material = makePartMaterial();
   private readonly ghostMaterial = new MeshStandardMaterial({
@@ -101,12 +113,20 @@ export class Parts {
       matrix: new Matrix4(),
       look: kPlain,
       finish: encodeFinish(kPlainFinish),
+      isSmall: false,
     }));
     for (const entry of this.entries) {
       this.byOccurrence.set(entry.occurrence, entry);
     }
     const all = this.entries.map((e) => e.shape);
-    this.solid = makeBatch(all, this.material);
+    const coarse = new Map([...new Set(all)].map((shape) => [shape, makeCoarse(shape)] as const));
+    const made = [...coarse.values()].filter((each) => each !== null);
+    this.solid = makeBatch(all, this.material, made);
+    for (const [shape, geometry] of coarse) {
+      const fine = this.solid.getGeometryIdAt(all.indexOf(shape));
+      this.geometries.set(shape, { fine, coarse: geometry === null ? fine : this.solid.addGeometry(geometry) });
+    }
+    made.forEach((each) => each.dispose());
     this.solid.sortObjects = false;
     this.solid.castShadow = this.solid.receiveShadow = true;
     this.shadows = new ContactShadows(this.entries.length);
@@ -118,6 +138,27 @@ export class Parts {
     }
     for (const entry of this.entries) {
       this.apply(entry);
+    }
+  }
+
+  /** Draws what is small in a picture coarsely, and without edges.
+   @param pixels  Size in the picture of what is a metre large and so far from the eye [m]; null: all is drawn finely. */
+  fitDetail(eye: Vector3, pixels: ((distance: number) => number) | null): void {
+    let hasChanged = false;
+    for (const entry of this.entries) {
+      const { center, radius } = entry.shape.sphere;
+      const distance = middle.copy(center).applyMatrix4(entry.matrix).distanceTo(eye);
+      const size = pixels === null ? Infinity : 2 * radius * pixels(distance);
+      const isSmall = !entry.look.isMarked && size < (entry.isSmall ? kLarge : kSmall);
+      if (isSmall !== entry.isSmall) {
+        const { fine, coarse } = this.geometries.get(entry.shape)!;
+        this.solid.setGeometryIdAt(entry.instance, isSmall ? coarse : fine);
+        entry.isSmall = isSmall;
+        hasChanged = true;
+      }
+    }
+    if (hasChanged) {
+      this.edges?.draw((instance) => !this.entries[instance]!.isSmall);
     }
   }
 
