@@ -1,10 +1,14 @@
-// How soon the page has its picture, and what it pays for moving parts: `npm run picture` with the program in
-// HVAS_BINARY. Figures are for docs/studio.md.
-import { fetchScene, launchBrowser, openPage, startStudio, waitForPicture } from "../e2e/harness.mjs";
+// How soon the page has its picture, what it pays for moving parts, and what the workshop costs: `npm run picture` with
+// the program in HVAS_BINARY; `npm run picture -- --only workshop` measures the workshop alone. Figures are for docs/studio.md.
+import { parseArgs } from "node:util";
+import { fetchScene, launchBrowser, openPage, startStudio, waitForPicture, waitForView } from "../e2e/harness.mjs";
 import { quantile } from "./quantile.mjs";
 
 const kVisits = 7;
 const kUpdates = 300;
+/** With and without the workshop so many pictures are drawn in each turn. */
+const kTurns = 12;
+const kPictures = 3;
 
 /** Opened anew each time, with nothing in the browser's cache; the program has opened the product. */
 async function timeFirstPicture(browser, file) {
@@ -40,20 +44,53 @@ async function timePoses(browser, file) {
   }
 }
 
-const browser = await launchBrowser();
-const first = await timeFirstPicture(browser, "../products/gear_pump.step");
-const poses = await timePoses(browser, "../products/frame_500.step");
-await browser.close();
-console.log(
-  JSON.stringify(
-    {
-      first_picture_ms_p50: quantile(first, 0.5),
-      first_picture_ms_max: Math.max(...first),
-      moved_parts: poses.parts,
-      poses_ms_p50: quantile(poses.times, 0.5),
-      poses_ms_p99: quantile(poses.times, 0.99),
-    },
-    null,
-    2,
-  ),
-);
+/** Times of pictures, each until one of its pixels has been read [ms]: shadows are drawn, and edges are smooth. The
+ workshop is switched on and off in turns, so that other work of the machine meets both. */
+async function timeWorkshop(file) {
+  const studio = await startStudio([file]);
+  const browser = await launchBrowser({ isSmooth: true });
+  const times = { with: [], without: [] };
+  try {
+    const preferences = JSON.stringify({ quality: "high", showsWorkshop: true });
+    const beforeLoad = (page) => page.addInitScript((kept) => localStorage.setItem("hvas-studio", kept), preferences);
+    const screen = { viewport: { width: 1920, height: 1080 }, reducedMotion: "reduce", isPlain: false };
+    const { page } = await openPage(browser, studio.operator, { ...screen, beforeLoad });
+    await waitForPicture(page);
+    await page.waitForFunction(() => performance.getEntriesByType("resource").some(({ name }) => name.includes("/workshop-")));
+    await waitForView(page);
+    for (let turn = 0; turn < kTurns; turn++) {
+      for (const kind of ["with", "without"]) {
+        times[kind].push(...(await page.evaluate((count) => window.hvas.timePictures(count), kPictures)));
+        await page.keyboard.press("u");
+        await waitForView(page);
+      }
+    }
+  } finally {
+    await browser.close();
+    await studio.stop();
+  }
+  const [withIt, without] = [quantile(times.with, 0.5), quantile(times.without, 0.5)];
+  return { workshop_picture_ms_p50: withIt, plain_picture_ms_p50: without, workshop_ratio: withIt / without };
+}
+
+async function timeProducts() {
+  const browser = await launchBrowser();
+  const first = await timeFirstPicture(browser, "../products/gear_pump.step");
+  const poses = await timePoses(browser, "../products/frame_500.step");
+  await browser.close();
+  return {
+    first_picture_ms_p50: quantile(first, 0.5),
+    first_picture_ms_max: Math.max(...first),
+    moved_parts: poses.parts,
+    poses_ms_p50: quantile(poses.times, 0.5),
+    poses_ms_p99: quantile(poses.times, 0.99),
+  };
+}
+
+const { only } = parseArgs({ options: { only: { type: "string", default: "" } } }).values;
+const kMeasurements = { products: timeProducts, workshop: () => timeWorkshop("../products/gear_pump.step") };
+for (const [name, measure] of Object.entries(kMeasurements)) {
+  if (name.startsWith(only)) {
+    console.log(JSON.stringify(await measure(), null, 2));
+  }
+}

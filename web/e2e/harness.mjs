@@ -191,9 +191,10 @@ export function copyToTemporary(files) {
 }
 
 /** Without a graphics processor; smooth edges would make each picture take twice as long. */
-export function launchBrowser() {
-  const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none"];
-  return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing] });
+export function launchBrowser({ isSmooth = false } = {}) {
+  const kDrawing = ["--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+  const edges = isSmooth ? [] : ["--webgl-antialiasing-mode=none"];
+  return chromium.launch({ executablePath: kChromium, args: ["--no-sandbox", ...kDrawing, ...edges] });
 }
 
 /** The browser of a file of tests that calls shareBrowser(). @type {import("playwright-core").Browser} */
@@ -218,7 +219,7 @@ export async function openPage(browser, link, { beforeLoad = null, isPlain = tru
   const context = await browser.newContext({ viewport, reducedMotion, ...options });
   const page = await context.newPage();
   if (isPlain) {
-    await page.addInitScript(prefer, { quality: "low" });
+    await page.addInitScript(prefer, { quality: "low", guidesFirstPart: false });
   }
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -307,6 +308,33 @@ export async function findBarriers(page) {
   const kOptions = { runOnly: ["wcag2a", "wcag2aa", "wcag21aa", "wcag22aa"], resultTypes: ["violations"] };
   const found = await page.evaluate((options) => window.axe.run(document, options), kOptions);
   return found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html}`);
+}
+
+/** What can be pressed or filled in and is not wholly on the screen, as far as it cannot be scrolled to; and whether the page
+ is wider than its window. */
+export function findOutside(page) {
+  return page.evaluate(() => {
+    const scrolls = (element) => /auto|scroll/.test(getComputedStyle(element).overflow);
+    const isScrolled = (element) => element !== null && (scrolls(element) || isScrolled(element.parentElement));
+    const all = [...document.querySelectorAll("button, a, input, select, [tabindex='0']")];
+    const outside = all.filter((element) => {
+      const { left, right, top, bottom, width, height } = element.getBoundingClientRect();
+      const isIn = left >= -0.5 && top >= -0.5 && right <= innerWidth + 0.5 && bottom <= innerHeight + 0.5;
+      return width > 0 && height > 0 && element.checkVisibility() && !isIn && !isScrolled(element.parentElement);
+    });
+    const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
+    return [...wide, ...outside.map((element) => element.outerHTML.slice(0, 200))];
+  });
+}
+
+/** How a page may be seen otherwise than by default: in German, in the colours of the system, and twice as large.
+ @param viewport  Of the page as it is not enlarged. */
+export function waysToSee({ width, height }) {
+  return {
+    German: { locale: "de-DE" },
+    "forced colours": { forcedColors: "active" },
+    "German at 200 %": { locale: "de-DE", deviceScaleFactor: 2, viewport: { width: width / 2, height: height / 2 } },
+  };
 }
 
 export function stateOf(page) {

@@ -6,6 +6,7 @@ import {
   browser,
   fetchScene,
   findBarriers,
+  findOutside,
   openPage,
   poseOf,
   shareBrowser,
@@ -18,6 +19,7 @@ import {
   waitForState,
   waitForStill,
   waitForView,
+  waysToSee,
   withStudio,
 } from "./harness.mjs";
 
@@ -114,6 +116,30 @@ describe("on a screen that is touched", () => {
             await page.keyboard.press("Escape");
             await waitForCalm(page);
           }
+        }
+        assert.deepEqual(complaints, []);
+        await page.context().close();
+      }
+    }));
+  }
+
+  for (const [name, options] of Object.entries(kScreens)) {
+    it(`${name}: in German, in forced colours and at 200 % nothing is out of the screen, and axe finds nothing`, withStudio([kBushing], async (studio) => {
+      for (const [way, changes] of Object.entries(waysToSee(options.viewport))) {
+        const { page, complaints } = await openPage(browser, studio.viewer, { ...options, ...changes });
+        await waitForPicture(page);
+        const check = async (state) => {
+          await waitForCalm(page);
+          assert.deepEqual(await findBarriers(page), [], `${way}: ${state}`);
+          assert.deepEqual(await findOutside(page), [], `${way}: ${state}`);
+          assert.ok(await reachesForcesOff(page), `${way}: ${state}`);
+          await takePicture(page, `${name}_${way}_${state}`.replaceAll(/[ %]+/g, "_"));
+        };
+        await check("first");
+        for (const sheet of (await page.getByTestId("phone-menu").count()) > 0 ? ["steps", "parts", "plots"] : []) {
+          await page.getByTestId(`phone-${sheet}`).tap();
+          await check(sheet);
+          await page.getByTestId(`phone-${sheet}`).tap();
         }
         assert.deepEqual(complaints, []);
         await page.context().close();

@@ -8,6 +8,7 @@ import {
   dropFile,
   fetchScene,
   findBarriers,
+  findOutside,
   insertByMouse,
   openPage,
   poseOf,
@@ -19,6 +20,7 @@ import {
   waitForPicture,
   waitForPlacement,
   waitForState,
+  waysToSee,
   withStudio,
 } from "./harness.mjs";
 
@@ -77,13 +79,24 @@ describe("the hand", () => {
     const { page, complaints } = await openPage(browser, studio.operator, { isPlain: false });
     await waitForPicture(page);
     const scene = await fetchScene(page);
+    const guide = page.getByTestId("guide");
+    assert.deepEqual(await guide.getByRole("listitem").allInnerTexts(), [
+      "1\nTake bushing: press on it and drag.",
+      "2\nBring it near its place, shown in green.",
+      "3\nPush it in until it is seated.",
+    ]);
+    assert.equal(await guide.locator("[aria-current=step]").getAttribute("data-testid"), "guide-take");
     for (const step of scene.steps.filter((s) => s.kind === "insert")) {
       await insertByMouse(page, step.occurrence, scene.occurrences[step.occurrence].goal.p);
+      await guide.waitFor({ state: "detached" }); // Whoever has put one in needs no guide.
       await takePicture(page, `inserting_${step.occurrence}`);
       await page.mouse.up();
       await waitForPlacement(page, step.occurrence, "placed");
     }
     await takePicture(page, "assembled");
+    await page.reload();
+    await waitForPicture(page);
+    assert.equal(await guide.count(), 0, "nor at the next visit");
     const last = scene.steps.at(-1).occurrence;
     await page.keyboard.press("Control+z");
     await waitForPlacement(page, last, "loose");
@@ -186,5 +199,18 @@ describe("everybody", () => {
       await takePicture(page, colorScheme);
     }
     await page.context().close();
+  }));
+
+  it("can use it in German, in forced colours and at 200 %: nothing is out of the screen", withStudio([kBushing], async (studio) => {
+    const viewport = { width: 1280, height: 720 };
+    for (const [way, changes] of Object.entries(waysToSee(viewport))) {
+      const { page } = await openPage(browser, studio.viewer, { viewport, ...changes });
+      await waitForPicture(page);
+      await waitForCalm(page);
+      assert.deepEqual(await findBarriers(page), [], way);
+      assert.deepEqual(await findOutside(page), [], way);
+      await takePicture(page, `desk_${way}`.replaceAll(/[ %]+/g, "_"));
+      await page.context().close();
+    }
   }));
 });

@@ -236,6 +236,7 @@ const helpActions: Action[] = [
   action("palette", "action.palette", () => (ui.overlay.value = { kind: "palette" }), { keys: ["ctrl+k"] }),
   action("shortcuts", "action.shortcuts", () => (ui.overlay.value = { kind: "shortcuts" }), { keys: ["?"] }),
   toggle("single-keys", "action.singleKeys", view.hasSingleKeys),
+  toggle("guide", "action.guide", view.guidesFirstPart),
 ];
 
 function showPath(kind: PathKind): void {

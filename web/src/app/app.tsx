@@ -3,6 +3,7 @@ import { canSteer, store, studio, ui } from "./app_state";
 import { Banners, LiveRegion, Notice, useStatusPolling } from "./banners";
 import { ConstraintList } from "./constraint_list";
 import { Overlays } from "./dialogs";
+import { GuideCard } from "./guide_card";
 import { Header } from "./header";
 import { HintBar } from "./hint_bar";
 import { t } from "./i18n";
@@ -88,12 +89,15 @@ export function App() {
           </div>
           {hasScene ? <ToolRail /> : isStudy ? null : <EmptyState />}
           <ViewPanels />
-          <HintBar />
+          <div class="view-foot">
+            <Notice />
+            <GuideCard />
+            <HintBar />
+          </div>
           <LoadingDrawer />
           <div class="drop-veil" aria-hidden="true">
             {t("drop.here")}
           </div>
-          <Notice />
           {shows(model) ? <Splitter name="model" /> : null}
           {shows(inspector) ? <Splitter name="inspector" /> : null}
           {shows(plots) ? <Splitter name="plots" /> : null}

@@ -163,4 +163,11 @@ export const deView: Record<keyof typeof enView, string> = {
   "action.askPart": "Um {part} bitten",
   "banner.partAsked": "{client} bittet um {part} in Ihrer Hand.",
   "notice.partAsked": "Sie haben um {part} gebeten. Wer das Teil hält, kann es übergeben.",
+  "action.guide": "Hinweise zum ersten Teil",
+  "guide.title": "Ihr erstes Teil",
+  "guide.take": "Ein Teil nehmen: darauf drücken und ziehen.",
+  "guide.takeExpected": "{expected} nehmen: darauf drücken und ziehen.",
+  "guide.bring": "In die Nähe seines Platzes bringen, grün gezeigt.",
+  "guide.push": "Hineinschieben, bis es sitzt.",
+  "guide.done": "Erledigt:",
 };

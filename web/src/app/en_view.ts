@@ -161,4 +161,11 @@ export const enView = {
   "action.askPart": "Ask for {part}",
   "banner.partAsked": "{client} asks for {part}, which is in your hand.",
   "notice.partAsked": "You have asked for {part}. Whoever holds it can hand it over.",
+  "action.guide": "Hints for the first part",
+  "guide.title": "Your first part",
+  "guide.take": "Take a part: press on it and drag.",
+  "guide.takeExpected": "Take {expected}: press on it and drag.",
+  "guide.bring": "Bring it near its place, shown in green.",
+  "guide.push": "Push it in until it is seated.",
+  "guide.done": "Done:",
 } as const;

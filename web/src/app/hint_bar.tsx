@@ -4,6 +4,7 @@ import { useRef } from "preact/hooks";
 import { liveNumbers, makeHint } from "../model/hints";
 import { leadsHand, store, studio, ui, view, viewport } from "./app_state";
 import { findAction, isEnabled, runAction } from "./actions";
+import { isGuiding } from "./guide_card";
 import { HandOverButton } from "./hand_over";
 import { number, t } from "./i18n";
 import { Key } from "./key";
@@ -43,7 +44,9 @@ export function HintBar() {
         {hasTwo ? <span class="badge">{t("hands.name", { n: (held?.hand ?? view.hand.value) + 1 })}</span> : null}
         <strong>{hint.params.part || t(`state.${hint.state}`)}</strong>
         {hint.params.part ? <span class="hint-state">{t(`state.${hint.state}`)}</span> : null}
-        <span class="hint-words">{isOthers ? t("hint.others") : t(hint.key, hint.params)}</span>
+        {isGuiding() && !isOthers && hint.key !== "hint.done" ? null : (
+          <span class="hint-words">{isOthers ? t("hint.others") : t(hint.key, hint.params)}</span>
+        )}
       </div>
       <span class="hint-caught" ref={caught}>
         {t("hint.caught")}

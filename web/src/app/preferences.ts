@@ -57,6 +57,7 @@ const kPreferences: Record<string, Preference> = {
   seated: keep(view.isSeated, isFlag),
   showsWorkshop: keep(view.showsWorkshop, isFlag),
   followsSteps: keep(view.followsSteps, isFlag),
+  guidesFirstPart: keep(view.guidesFirstPart, isFlag),
   editsBench: keep(view.editsBench, isFlag),
   bench: keep(view.benchItems, orNull(listOf(isItem))),
   model: keep(ui.panels.model, isFlag),

@@ -33,6 +33,8 @@ export interface StudioHooks {
   };
   /** What it costs the page to take new poses of all parts, each time [ms]; without drawing them. */
   timePoses(times: number): readonly number[];
+  /** How long so many pictures take, each until one of its pixels has been read [ms]. */
+  timePictures(times: number): readonly number[];
   /** Of a point of W [m]: client pixels. */
   project(p: readonly [number, number, number]): { x: number; y: number };
 }
@@ -131,6 +133,18 @@ function timePoses(times: number): number[] {
   });
 }
 
+function timePictures(times: number): number[] {
+  const port = viewport.value!;
+  const gl = port.renderer.getContext();
+  const pixel = new Uint8Array(4);
+  return Array.from({ length: times }, () => {
+    const start = performance.now();
+    port.draw();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    return performance.now() - start;
+  });
+}
+
 function playbackState(): unknown {
   const playback = studio.recordings.playback.value;
   return playback === null
@@ -189,6 +203,7 @@ export function exposeHooks(): void {
     screen,
     screenOfFace,
     timePoses,
+    timePictures,
     room: {
       part: partInRoom,
       world,

@@ -17,7 +17,7 @@ const element = (() => {
 })();
 
 /** What floats over the picture and stays there. */
-const kPanels = ".tool-rail, .hint-bar, .model-panel, .inspector, .phone-sheet, .finish-card";
+const kPanels = ".tool-rail, .hint-bar, .guide, .model-panel, .inspector, .phone-sheet, .finish-card";
 
 function coveredRim(): Rim {
   const workspace = element().closest(".workspace");

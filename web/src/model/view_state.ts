@@ -17,6 +17,9 @@ export function makeViewState() {
   const isSlow = signal(false);
   const isFast = signal(false);
   const showsWorkshop = signal(true);
+  const reflects = signal(true);
+  /** There is time for workshop and reflections: somebody has asked for the best picture, or the machine draws fast enough. */
+  const isRich = computed(() => quality.value === "high" || (quality.value === "auto" && isFast.value && !isSlow.value));
   return {
     tool: signal<Tool>("hand"),
     /** The hand that the mouse leads where there are two. */
@@ -49,6 +52,9 @@ export function makeViewState() {
     isFast,
     /** Shadows and workshop are drawn: as is wished, or else where the machine is fast enough. */
     isFine: computed(() => quality.value === "high" || (quality.value === "auto" && !isSlow.value)),
+    reflects,
+    /** Metals reflect a room. */
+    hasRoomLight: computed(() => reflects.value && isRich.value),
     showsForces: signal(true),
     /** Newtons to metres of arrow; null: as fits the largest force so far. */
     locksForceScale: signal(false),
@@ -58,10 +64,11 @@ export function makeViewState() {
     showsCube: signal(true),
     /** Floor, walls, bench and tools around the product are wanted. */
     showsWorkshop,
-    /** They are drawn: where somebody has asked for the best picture, or the machine draws fast enough. */
-    drawsWorkshop: computed(() => showsWorkshop.value && (quality.value === "high" || (quality.value === "auto" && isFast.value && !isSlow.value))),
+    drawsWorkshop: computed(() => showsWorkshop.value && isRich.value),
     /** The eye moves to the next part and its place by itself. */
     followsSteps: signal(true),
+    /** Three hints lead through the first part: until one has been put in by hand. */
+    guidesFirstPart: signal(true),
     /** Somebody puts things onto the bench or away. */
     editsBench: signal(false),
     /** What stands on the bench; null: as at first. */

@@ -5,6 +5,7 @@ import {
   BufferGeometry,
   Color,
   DataTexture,
+  DynamicDrawUsage,
   FloatType,
   LineSegments,
   NearestFilter,
@@ -62,6 +63,8 @@ export class EdgeBatch {
   readonly object: LineSegments<BufferGeometry, ShaderMaterial>;
   private readonly texture: DataTexture;
   private readonly poses: Float32Array;
+  /** Of each part, the first of its corners; and the end of all. */
+  private readonly starts: readonly number[];
 
   constructor(shapes: readonly PartShape[]) {
     this.poses = new Float32Array(16 * Math.max(1, shapes.length));
@@ -79,9 +82,29 @@ export class EdgeBatch {
       depthWrite: false,
       clipping: true,
     });
+    let end = 0;
+    this.starts = [0, ...shapes.map(({ edges }) => (end += (2 * edges.length) / kEdgeFloats))];
     this.object = new LineSegments(makeGeometry(shapes), material);
     this.object.frustumCulled = false;
     this.object.renderOrder = 1;
+  }
+
+  /** Draws the edges of these parts only: what is small in the picture has none. */
+  draw(isDrawn: (instance: number) => boolean): void {
+    const { geometry } = this.object;
+    if (geometry.index === null) {
+      geometry.setIndex(new BufferAttribute(new Uint32Array(this.starts.at(-1) ?? 0), 1).setUsage(DynamicDrawUsage));
+    }
+    const index = geometry.index!.array;
+    let at = 0;
+    for (let instance = 0; instance + 1 < this.starts.length; instance++) {
+      const end = isDrawn(instance) ? (this.starts[instance + 1] ?? 0) : 0;
+      for (let corner = this.starts[instance] ?? 0; corner < end; corner++) {
+        index[at++] = corner;
+      }
+    }
+    geometry.index!.needsUpdate = true;
+    geometry.setDrawRange(0, at);
   }
 
   setInk(ink: Color, marked: Color): void {

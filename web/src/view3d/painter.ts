@@ -26,6 +26,9 @@ export class Painter {
   /** @param vrEyes  Where a headset is drawn for. */
   draw(width: number, height: number, vrEyes: PerspectiveCamera): void {
     const { renderer, view, rig } = this;
+    // Both eyes of a headset are nearer than the rig's cameras.
+    const pixels = renderer.xr.isPresenting ? null : (distance: number) => 1 / rig.metresPerPixel(distance, height);
+    this.product.parts?.fitDetail(rig.camera.position, pixels);
     if (renderer.xr.isPresenting) {
       renderer.clear();
       renderer.render(this.scene, vrEyes);

@@ -2,6 +2,7 @@
 
 import {
   BatchedMesh,
+  type BufferGeometry,
   Color,
   DoubleSide,
   FrontSide,
@@ -10,12 +11,17 @@ import {
   MeshStandardMaterial,
   Quaternion,
   Vector3,
+  Vector4,
   type Plane,
   type Ray,
 } from "three";
-import type { Pose } from "../protocol/messages";
+import { encodeFinish, finishOf, kPlainFinish } from "../model/finish";
+import type { Pose, Scene } from "../protocol/messages";
+import { makeCoarse } from "./coarse_shape";
+import { ContactShadows } from "./contact_shadows";
 import { EdgeBatch } from "./edge_batch";
 import { raycastPart, type PartShape } from "./part_shape";
+import { makePartMaterial, setRoomLight } from "./room_light";
 
 /** Beyond this many vertices of edges a scene is drawn without. */
 const kMostEdgeTriangles = 900_000;
@@ -38,6 +44,10 @@ interface Entry {
   shape: PartShape;
   matrix: Matrix4;
   look: PartLook;
+  /** By encodeFinish(). */
+  finish: number;
+  /** It is small in the picture. */
+  isSmall: boolean;
 }
 
 export interface PickHit {
@@ -50,6 +60,7 @@ export interface PickHit {
 const kUnit = new Vector3(1, 1, 1);
 const position = new Vector3();
 const turn = new Quaternion();
+const middle = new Vector3();
 
 export function toMatrix(pose: Pose, out: Matrix4): Matrix4 {
   position.set(...pose.p);
@@ -57,10 +68,16 @@ export function toMatrix(pose: Pose, out: Matrix4): Matrix4 {
   return out.compose(position, turn, kUnit);
 }
 
-function makeBatch(shapes: readonly PartShape[], material: MeshStandardMaterial): BatchedMesh {
+/** A part of a smaller diameter than this is drawn coarsely, and without edges [px]; once it is, until it is larger than
+ `kLarge`. Choices, made by eye on the picture of 582 parts: with 28 px its screws had lost their outlines. */
+const kSmall = 18;
+const kLarge = 22;
+
+function makeBatch(shapes: readonly PartShape[], material: MeshStandardMaterial, coarse: readonly BufferGeometry[] = []): BatchedMesh {
   const distinct = [...new Set(shapes)];
-  const vertices = distinct.reduce((n, s) => n + s.positions.length / 3, 0);
-  const indices = distinct.reduce((n, s) => n + s.index.length, 0);
+  const more = (count: (g: BufferGeometry) => number) => coarse.reduce((n, g) => n + count(g), 0);
+  const vertices = distinct.reduce((n, s) => n + s.positions.length / 3, 0) + more((g) => g.getAttribute("position").count);
+  const indices = distinct.reduce((n, s) => n + s.index.length, 0) + more((g) => g.index!.count);
   const batch = new BatchedMesh(shapes.length, vertices, indices, material);
   const ids = new Map(distinct.map((shape) => [shape, batch.addGeometry(shape.geometry)]));
   for (const shape of shapes) {
@@ -75,15 +92,9 @@ export class Parts {
   readonly entries: readonly Entry[];
   private readonly byOccurrence = new Map<number, Entry>();
   private readonly solid: BatchedMesh;
+  private readonly geometries = new Map<PartShape, { fine: number; coarse: number }>();
   private ghost: BatchedMesh | null = null;
-  private readonly material = new MeshStandardMaterial({
-    vertexColors: true,
-    roughness: 0.5,
-    metalness: 0.12,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  private readonly material = makePartMaterial();
   private readonly ghostMaterial = new MeshStandardMaterial({
     vertexColors: true,
     roughness: 0.6,
@@ -92,6 +103,7 @@ export class Parts {
     depthWrite: false,
   });
   readonly edges: EdgeBatch | null;
+  private readonly shadows: ContactShadows;
 
   constructor(shapes: ReadonlyMap<number, PartShape>) {
     this.entries = [...shapes].map(([occurrence, shape], instance) => ({
@@ -100,15 +112,25 @@ export class Parts {
       shape,
       matrix: new Matrix4(),
       look: kPlain,
+      finish: encodeFinish(kPlainFinish),
+      isSmall: false,
     }));
     for (const entry of this.entries) {
       this.byOccurrence.set(entry.occurrence, entry);
     }
     const all = this.entries.map((e) => e.shape);
-    this.solid = makeBatch(all, this.material);
+    const coarse = new Map([...new Set(all)].map((shape) => [shape, makeCoarse(shape)] as const));
+    const made = [...coarse.values()].filter((each) => each !== null);
+    this.solid = makeBatch(all, this.material, made);
+    for (const [shape, geometry] of coarse) {
+      const fine = this.solid.getGeometryIdAt(all.indexOf(shape));
+      this.geometries.set(shape, { fine, coarse: geometry === null ? fine : this.solid.addGeometry(geometry) });
+    }
+    made.forEach((each) => each.dispose());
     this.solid.sortObjects = false;
     this.solid.castShadow = this.solid.receiveShadow = true;
-    this.root.add(this.solid);
+    this.shadows = new ContactShadows(this.entries.length);
+    this.root.add(this.solid, this.shadows.object);
     const triangles = [...new Set(all)].reduce((n, s) => n + s.index.length / 3, 0);
     this.edges = triangles <= kMostEdgeTriangles ? new EdgeBatch(all) : null;
     if (this.edges !== null) {
@@ -116,6 +138,27 @@ export class Parts {
     }
     for (const entry of this.entries) {
       this.apply(entry);
+    }
+  }
+
+  /** Draws what is small in a picture coarsely, and without edges.
+   @param pixels  Size in the picture of what is a metre large and so far from the eye [m]; null: all is drawn finely. */
+  fitDetail(eye: Vector3, pixels: ((distance: number) => number) | null): void {
+    let hasChanged = false;
+    for (const entry of this.entries) {
+      const { center, radius } = entry.shape.sphere;
+      const distance = middle.copy(center).applyMatrix4(entry.matrix).distanceTo(eye);
+      const size = pixels === null ? Infinity : 2 * radius * pixels(distance);
+      const isSmall = !entry.look.isMarked && size < (entry.isSmall ? kLarge : kSmall);
+      if (isSmall !== entry.isSmall) {
+        const { fine, coarse } = this.geometries.get(entry.shape)!;
+        this.solid.setGeometryIdAt(entry.instance, isSmall ? coarse : fine);
+        entry.isSmall = isSmall;
+        hasChanged = true;
+      }
+    }
+    if (hasChanged) {
+      this.edges?.draw((instance) => !this.entries[instance]!.isSmall);
     }
   }
 
@@ -127,6 +170,18 @@ export class Parts {
     return this.byOccurrence.get(occurrence)?.matrix ?? null;
   }
 
+  /** Takes materials and the table's height from a scene. */
+  setScene({ occurrences, table_z_m: table }: Scene): void {
+    this.shadows.setTable(table);
+    for (const { id, material } of occurrences) {
+      const entry = this.byOccurrence.get(id);
+      if (entry !== undefined) {
+        entry.finish = encodeFinish(finishOf(material));
+        this.apply(entry);
+      }
+    }
+  }
+
   setPose(occurrence: number, pose: Pose): void {
     const entry = this.byOccurrence.get(occurrence);
     if (entry === undefined) {
@@ -136,6 +191,7 @@ export class Parts {
     this.solid.setMatrixAt(entry.instance, entry.matrix);
     this.ghost?.setMatrixAt(entry.instance, entry.matrix);
     this.setEdges(entry);
+    this.setShadow(entry);
   }
 
   setLook(occurrence: number, look: PartLook): void {
@@ -146,9 +202,11 @@ export class Parts {
     }
   }
 
-  setEdgesShown(isShown: boolean): void {
+  /** @param hasRoom  Metals reflect a room. */
+  setDrawn(hasEdges: boolean, hasRoom: boolean): void {
+    setRoomLight(this.material, hasRoom);
     if (this.edges !== null) {
-      this.edges.object.visible = isShown;
+      this.edges.object.visible = hasEdges;
     }
   }
 
@@ -203,6 +261,7 @@ export class Parts {
     this.solid.dispose();
     this.ghost?.dispose();
     this.edges?.dispose();
+    this.shadows.dispose();
     this.material.dispose();
     this.ghostMaterial.dispose();
     for (const shape of new Set(this.entries.map((e) => e.shape))) {
@@ -219,11 +278,16 @@ export class Parts {
     if (look.tint !== null) {
       color.lerp(look.tint, look.amount);
     }
-    this.solid.setColorAt(instance, color);
+    this.solid.setColorAt(instance, new Vector4(color.r, color.g, color.b, entry.finish));
     this.solid.setVisibleAt(instance, !look.isHidden && !look.isGhost);
     this.ghost?.setColorAt(instance, color);
     this.ghost?.setVisibleAt(instance, !look.isHidden && look.isGhost);
     this.setEdges(entry);
+    this.setShadow(entry);
+  }
+
+  private setShadow({ instance, shape, matrix, look }: Entry): void {
+    this.shadows.place(instance, shape.box, matrix, !look.isHidden && !look.isGhost);
   }
 
   private setEdges(entry: Entry): void {

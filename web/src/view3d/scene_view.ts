@@ -66,7 +66,7 @@ export class SceneView {
     this.life.follow(() => this.applyLooks());
     this.life.follow(() => this.applySection());
     this.life.follow(() => {
-      this.parts?.setEdgesShown(view.showsEdges.value);
+      this.parts?.setDrawn(view.showsEdges.value, view.hasRoomLight.value);
       this.arrowScale.isLocked = view.locksForceScale.value;
       this.isDirty = true;
     });
@@ -167,6 +167,7 @@ export class SceneView {
       this.glbUrl = scene.glb;
     }
     this.scene = scene;
+    this.parts.setScene(scene);
     this.forgetPoses();
     this.sphere.set(new Vector3(...scene.centre_m), scene.radius_m);
     this.arrowScale.fit(scene.radius_m);
@@ -184,7 +185,7 @@ export class SceneView {
     if (this.palette !== null) {
       this.parts.edges?.setInk(this.palette.edge, this.palette.edgeMarked);
     }
-    this.parts.setEdgesShown(this.view.showsEdges.peek());
+    this.parts.setDrawn(this.view.showsEdges.peek(), this.view.hasRoomLight.peek());
     this.applyLooks();
     this.applySection();
     this.isDirty = true;

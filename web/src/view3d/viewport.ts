@@ -311,7 +311,7 @@ export class Viewport {
     }
   }
 
-  private draw(): void {
+  draw(): void {
     this.painter.draw(this.width, this.height, this.vrEyes);
     this.framesDrawn += 1;
   }

@@ -14,6 +14,7 @@ function setUpView(): void {
   view.assists.value = false;
   view.letsGoWhenSeated.value = true;
   view.showsWorkshop.value = false;
+  view.reflects.value = false;
   view.showsCube.value = false;
   view.showsEdges.value = true;
   view.showsGrid.value = true;

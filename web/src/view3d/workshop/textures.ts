@@ -1,6 +1,6 @@
 /** Surfaces of the workshop, drawn when they are needed: no picture is loaded. */
 
-import { CanvasTexture, LinearMipmapNearestFilter, RepeatWrapping, SRGBColorSpace } from "three";
+import { CanvasTexture, LinearMipmapNearestFilter, RepeatWrapping } from "three";
 
 /** A stream of numbers from 0 to 1, the same each time (mulberry32). */
 export function makeRandom(seed: number): () => number {
@@ -21,7 +21,6 @@ function makeTexture(size: number, across: number, seed: number, draw: Draw): Ca
   canvas.width = canvas.height = size;
   draw(canvas.getContext("2d")!, size, makeRandom(seed));
   const texture = new CanvasTexture(canvas);
-  texture.colorSpace = SRGBColorSpace;
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.repeat.set(1 / across, 1 / across);
   texture.minFilter = LinearMipmapNearestFilter; // Half the work of blending two of its sizes, for each pixel.

@@ -16,7 +16,7 @@ import {
   type Ray,
   type Texture,
 } from "three";
-import { bakeLight } from "./baked_light";
+import { bakeLight, makeBakedMaterial } from "./baked_light";
 import { benchSize, keepOnBench, type BenchItem, type BenchKind, type BenchSize } from "../../model/bench";
 import { makeBenchItem } from "./bench_items";
 import { makePegboard, makeWood } from "./textures";
@@ -45,6 +45,8 @@ function scaleUv(geometry: BoxGeometry, x: number, y: number, z: number): BoxGeo
 
 /** The bench's top is lit in so many pieces each way, so that the lamp's spot is round. */
 const kTopParts = 24;
+/** Bench and room are drawn after the opaque parts, so that nothing of them is drawn where a part hides them. */
+const kBehindParts = 1;
 /** The walls from below: a skirting, paint, a line, plaster; heights over the floor [m]. */
 const kWallBands = [
   { from: 0, to: 0.1, color: 0x44586a },
@@ -84,6 +86,7 @@ export class Workshop {
     this.clearBuilding();
     this.buildBench();
     this.buildRoom();
+    this.building.children.forEach((each) => (each.renderOrder = kBehindParts));
   }
 
   /** What stands on the bench now. */
@@ -137,8 +140,8 @@ export class Workshop {
 
   private buildBench(): void {
     const { x, y } = this.size;
-    const wood = new MeshBasicMaterial({ map: this.textures.wood, vertexColors: true });
-    const steel = new MeshBasicMaterial({ color: 0x4b5560, vertexColors: true });
+    const wood = makeBakedMaterial(0xffffff, { map: this.textures.wood });
+    const steel = makeBakedMaterial(0x4b5560);
     const add = (w: number, d: number, h: number, at: Vector3, material: Material, parts = 1) => {
       const geometry = scaleUv(new BoxGeometry(w, d, h, parts, parts), w, d, h);
       const mesh = new Mesh(bakeLight(geometry, (place) => lampLight(place.add(at))), material);
@@ -162,12 +165,12 @@ export class Workshop {
       const geometry = new BoxGeometry(width, depth, to - from);
       keepOnlySides(geometry);
       // Seen from within only: from outside one looks in.
-      const paint = new MeshBasicMaterial({ color, vertexColors: true, side: BackSide });
+      const paint = makeBakedMaterial(color, { side: BackSide });
       const band = new Mesh(bakeLight(geometry, () => kWallLight, -1), paint);
       band.position.z = floorZ + (from + to) / 2;
       this.building.add(band);
     }
-    const concrete = new MeshBasicMaterial({ color: 0x8c9095, vertexColors: true });
+    const concrete = makeBakedMaterial(0x8c9095);
     const floor = new Mesh(bakeLight(new PlaneGeometry(width, depth, kTopParts, kTopParts), lampLight), concrete);
     floor.position.z = floorZ;
     const board = this.plane(1.9 * x, 0.7, this.textures.board);
@@ -191,7 +194,7 @@ export class Workshop {
     for (let k = 0; k < uv.count; k++) {
       uv.setXY(k, uv.getX(k) * width, uv.getY(k) * depth);
     }
-    return new Mesh(bakeLight(geometry), new MeshBasicMaterial({ map: texture, vertexColors: true }));
+    return new Mesh(bakeLight(geometry), makeBakedMaterial(0xffffff, { map: texture }));
   }
 
   private clearBuilding(): void {
