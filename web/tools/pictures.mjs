@@ -2,7 +2,8 @@
 //   node tools/pictures.mjs [--out ../docs/pictures/studio] [--only phone]
 // The program is build/dev/src/app/hvas, as for the tests of the page.
 
-import { mkdirSync } from "node:fs";
+import { mkdirSync, mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
 import {
@@ -26,6 +27,10 @@ const kDesk = { viewport: { width: 1280, height: 760 } };
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kTablet = { viewport: { width: 820, height: 1180 }, hasTouch: true, isMobile: true };
 const kQuality = 72;
+const kStudy = ["--study", "xia-2011", "--participant", "P01", "-o", join(mkdtempSync(join(tmpdir(), "hvas-pictures-")), "study")];
+
+/** Somebody who has put a part in by hand before is not guided any more. */
+const leaveUnguided = (page) => page.addInitScript(() => localStorage.getItem("hvas-studio") ?? localStorage.setItem("hvas-studio", '{"guidesFirstPart":false}'));
 
 const project = (page, p) => page.evaluate((point) => window.hvas.project(point), p);
 
@@ -55,7 +60,7 @@ async function carry(page, height = 0.1) {
 
 async function mate(page) {
   const { occurrence, goal } = await carry(page);
-  const half = await project(page, [goal[0], goal[1], goal[2] + 0.015]);
+  const half = await project(page, [goal[0], goal[1], goal[2] + 0.03]);
   await page.mouse.move(half.x, half.y, { steps: 8 });
   await waitForState(page, ({ held }) => ["captured", "mating"].includes(held[0]?.state));
   return { occurrence, goal };
@@ -66,6 +71,25 @@ async function seat(page) {
   const into = await project(page, [goal[0], goal[1], goal[2] - 0.01]);
   await page.mouse.move(into.x, into.y, { steps: 8 });
   await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
+}
+
+/** Somebody else has joined, points to the part that the first one holds, and has pinned a note. */
+async function joinIn(page, studio) {
+  const { occurrence } = await carry(page);
+  await page.mouse.up();
+  const { page: other } = await openPage(browser, studio.operator, { ...kDesk, reducedMotion: "reduce" });
+  await waitForPicture(other);
+  await other.evaluate(async () => {
+    document.querySelector('[data-testid="button-share"]').click();
+  });
+  await other.getByTestId("own-name").fill("Ada");
+  await other.getByTestId("own-name").blur();
+  await other.keyboard.press("Escape");
+  await other.getByTestId("hint-join").click();
+  await page.getByTestId("lease-asked").waitFor();
+  const at = await other.evaluate((id) => window.hvas.screen(id), occurrence);
+  await other.mouse.move(at.x, at.y, { steps: 4 });
+  await page.getByTestId("cursor-c2").waitFor();
 }
 
 /** The simulated person puts all parts in. */
@@ -82,6 +106,7 @@ async function seeWithTwoEyes(page) {
 
 const kStates = [
   { name: "first_view", product: "gear_pump", screen: kDesk },
+  { name: "guided", product: "bushing", screen: kDesk, isGuided: true },
   { name: "carrying", product: "bushing", screen: kDesk, act: carry },
   { name: "mating", product: "bushing", screen: kDesk, act: mate },
   { name: "seated", product: "bushing", screen: kDesk, act: seat },
@@ -91,19 +116,27 @@ const kStates = [
   { name: "phone", product: "gear_pump", screen: kPhone },
   { name: "phone_steps", product: "gear_pump", screen: kPhone, act: (page) => page.getByTestId("phone-steps").tap() },
   { name: "tablet", product: "gear_pump", screen: kTablet },
+  { name: "two_people", product: "bushing", screen: kDesk, act: joinIn },
+  { name: "start_page", product: null, screen: kDesk, act: (page) => page.getByTestId("start-devices").waitFor() },
+  { name: "study", product: null, isStudy: true, screen: kDesk, act: (page) => page.getByTestId("desk-phase").waitFor() },
   { name: "many_parts", product: "frame_500", screen: kDesk },
 ];
 
 mkdirSync(options.out, { recursive: true });
 const browser = await launchBrowser();
-for (const { name, product, screen, act } of kStates.filter((each) => each.name.includes(options.only))) {
+for (const { name, product, screen, act, isGuided = false, isStudy = false } of kStates.filter((each) => each.name.includes(options.only))) {
   for (const colorScheme of ["light", "dark"]) {
-    const studio = await startStudio([`../products/${product}.step`]);
-    const { page } = await openPage(browser, studio.operator, { ...screen, colorScheme, isPlain: false, reducedMotion: "reduce" });
-    await waitForWhole(page);
-    await act?.(page);
+    const studio = await startStudio(isStudy ? kStudy : product === null ? [] : [`../products/${product}.step`]);
+    const beforeLoad = isGuided ? null : leaveUnguided;
+    const { page } = await openPage(browser, studio.operator, { ...screen, colorScheme, isPlain: false, reducedMotion: "reduce", beforeLoad });
+    if (product !== null) {
+      await waitForWhole(page);
+    }
+    await act?.(page, studio);
     await waitForCalm(page);
-    await waitForView(page);
+    if (product !== null) {
+      await waitForView(page);
+    }
     await page.screenshot({ path: join(options.out, `${name}_${colorScheme}.jpg`), type: "jpeg", quality: kQuality });
     await page.context().close();
     await studio.stop();
