@@ -73,20 +73,19 @@ async function seat(page) {
   await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
 }
 
-/** Somebody else has joined, points to the part that the first one holds, and has pinned a note. */
+/** Somebody else has joined with a hand, and points to the part that the first one holds. */
 async function joinIn(page, studio) {
-  const { occurrence } = await carry(page);
-  await page.mouse.up();
   const { page: other } = await openPage(browser, studio.operator, { ...kDesk, reducedMotion: "reduce" });
   await waitForPicture(other);
-  await other.evaluate(async () => {
-    document.querySelector('[data-testid="button-share"]').click();
-  });
+  await other.getByTestId("button-share").click();
   await other.getByTestId("own-name").fill("Ada");
   await other.getByTestId("own-name").blur();
   await other.keyboard.press("Escape");
   await other.getByTestId("hint-join").click();
-  await page.getByTestId("lease-asked").waitFor();
+  await page.getByTestId("lease-asked").getByRole("button").first().click();
+  await waitForState(page, ({ hands }) => hands.length === 2);
+  const { occurrence } = await carry(page);
+  await page.mouse.up();
   const at = await other.evaluate((id) => window.hvas.screen(id), occurrence);
   await other.mouse.move(at.x, at.y, { steps: 4 });
   await page.getByTestId("cursor-c2").waitFor();
