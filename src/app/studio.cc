@@ -30,8 +30,8 @@
 #include "base/user_folder.h"
 #include "cad/input_file.h"
 #include "studio/certificate.h"
-#include "studio/saved_work.h"
 #include "studio/recent_files.h"
+#include "studio/saved_work.h"
 #include "studio/server.h"
 #include "studio/state_folder.h"
 #include "studio/study_desk.h"
@@ -309,7 +309,8 @@ int RunStudio(const StudioOptions& options) {
   }
   served.desk = desk->get();
   const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state");
-  const std::filesystem::path recent = (state ? *state : scratch->path()) / "studio" / "recent.json";
+  const std::filesystem::path recent =
+      (state ? *state : scratch->path()) / "studio" / "recent.json";
   studio::Server server(&workbench, FindOffered(recent), served);
   if (const auto started = server.Start(); !started) {
     return ReportFailure(started.error());

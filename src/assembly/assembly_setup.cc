@@ -25,8 +25,7 @@ std::vector<Hand> ListOf(Hand hand) {
 
 RunSetup::RunSetup(std::shared_ptr<const simulation::Model> model, std::vector<Hand> hands)
     : hands_(std::move(hands)),
-      simulation_(
-          std::make_unique<simulation::Simulation>(std::move(model), ListTicks(hands_))) {}
+      simulation_(std::make_unique<simulation::Simulation>(std::move(model), ListTicks(hands_))) {}
 
 simulation::Persons RunSetup::ListPersons() const {
   simulation::Persons persons{};

@@ -56,12 +56,13 @@ struct BrokenEdges {
   spatial::Pose X_WH_ahead;  ///< Where the held part will be next, as far as is known.
 };
 
-inline constexpr std::size_t kMaxLeftOut = 9;  ///< Lists of bodies that a query leaves out: a choice.
+inline constexpr std::size_t kMaxLeftOut =
+    9;  ///< Lists of bodies that a query leaves out: a choice.
 
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
-  std::span<const Allowance> allowances{};            ///< The first one of a body counts.
+  std::span<const Allowance> allowances{};  ///< The first one of a body counts.
   /** Lists of bodies that are not asked: what moves with the part, and what others hold. */
   std::array<std::span<const BodyId>, kMaxLeftOut> left_out{};
   /** The held part's faces as made; null: those of `self`, and if there is none, as drawn. */

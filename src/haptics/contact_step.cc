@@ -175,9 +175,8 @@ void ContactStep::LeaveOut(IsLeft is_left) noexcept {
 
 bool ContactStep::IsMovedByOther(contact::BodyId id) const noexcept {
   const contact::BodyId leader = bodies_.LeaderOf(id);
-  return std::any_of(others_.begin(), others_.end(), [leader](const HandExchange& other) {
-    return MovesBody(other, leader);
-  });
+  return std::any_of(others_.begin(), others_.end(),
+                     [leader](const HandExchange& other) { return MovesBody(other, leader); });
 }
 
 bool ContactStep::IsHeldStillByOther(contact::BodyId id) const noexcept {
@@ -201,10 +200,9 @@ bool ContactStep::IsAtRestAt(const RigidGroup& target, const spatial::Pose& X_WB
     return false;
   }
   return std::none_of(others.begin(), others.end(), [&target](const HandExchange& other) {
-    return std::any_of(target.bodies.begin(), target.bodies.end(),
-                       [&other](contact::BodyId body) {
-                         return HasBody(ListHeldBy(other), body) || MovesBody(other, body);
-                       });
+    return std::any_of(target.bodies.begin(), target.bodies.end(), [&other](contact::BodyId body) {
+      return HasBody(ListHeldBy(other), body) || MovesBody(other, body);
+    });
   });
 }
 
@@ -462,8 +460,8 @@ double ContactStep::CalcOtherSpeed() const noexcept {
   for (const HandExchange& other : others_) {
     const OtherPart& part = other_parts_[other.hand];
     if (part.index != ConstraintSolver::kWorld) {
-      speed = std::max(
-          speed, part.V.tail<3>().norm() + part.V.head<3>().norm() * other.displayed.reach);
+      speed = std::max(speed,
+                       part.V.tail<3>().norm() + part.V.head<3>().norm() * other.displayed.reach);
     }
   }
   return speed;

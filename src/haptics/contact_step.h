@@ -24,9 +24,9 @@ struct TurnedFastener {
   double rate{0};                       ///< Counter-clockwise about its axis [rad/s].
 };
 
-/** Contacts in one step of a hand: of the held part, of loose parts that move, and of the parts that
- other hands hold, which join the step as bodies with their own responses. Finds them, gives them
- to the solver with their friction, and moves what was solved as far as it may go (X7, X11).
+/** Contacts in one step of a hand: of the held part, of loose parts that move, and of the parts
+ that other hands hold, which join the step as bodies with their own responses. Finds them, gives
+ them to the solver with their friction, and moves what was solved as far as it may go (X7, X11).
 
  All but SetProperties is RT-safe. */
 class ContactStep {
@@ -175,9 +175,9 @@ class ContactStep {
   /** What this hand has with another one. */
   struct OtherPart {
     int index{ConstraintSolver::kWorld};  ///< Its part in the solver, in this tick.
-    Vec6 V{Vec6::Zero()};     ///< Velocity of its part without what touches it in this step.
-    spatial::Wrench F_W;      ///< Wrench of the last step on its part, at the centre of mass.
-    std::uint32_t hold{0};    ///< Its hold that this was for.
+    Vec6 V{Vec6::Zero()};        ///< Velocity of its part without what touches it in this step.
+    spatial::Wrench F_W;         ///< Wrench of the last step on its part, at the centre of mass.
+    std::uint32_t hold{0};       ///< Its hold that this was for.
     bool is_solved_here{false};  ///< This step has solved the contact of the two held parts.
     MutualContact mutual;        ///< That contact.
   };
@@ -232,7 +232,7 @@ class ContactStep {
   std::size_t pressing_count_{0};
 
   // Values of the present tick.
-  const HeldPart* held_{nullptr};        ///< Null between ticks.
+  const HeldPart* held_{nullptr};         ///< Null between ticks.
   std::span<const HandExchange> others_;  ///< Empty between ticks.
   ContactAccount account_;
   int held_contacts_{0};  ///< Contacts of the held part in the solver; the first ones.
@@ -240,7 +240,7 @@ class ContactStep {
   /** Bodies that the held part does not meet now, by the index of the hand that has them. */
   std::array<std::span<const contact::BodyId>, kMaxHands> unmet_{};
 
-  std::array<OtherPart, kMaxHands> other_parts_;  ///< By the index of the hand.
+  std::array<OtherPart, kMaxHands> other_parts_;  ///< Indexed by hand.
 };
 
 }  // namespace hvas::haptics

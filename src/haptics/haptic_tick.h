@@ -37,8 +37,8 @@ struct LetGo {
 
  One thread owns it. Take and Drop allocate nothing but must not run during Tick. The hands
  of one scene, kMaxHands at most, tick in turn on the same thread, and each is given what the others
- gave after their last ticks; what is held stays in the scene where it is displayed, and a loose part that moves belongs to the
- hand that woke it. */
+ gave after their last ticks; what is held stays in the scene where it is displayed, and a loose
+ part that moves belongs to the hand that woke it. */
 class HapticTick {
  public:
   /** @param scene  Bodies in the world; outlives this object. Free bodies and what is held are

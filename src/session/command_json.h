@@ -14,7 +14,8 @@
 namespace hvas::session {
 
 inline constexpr const char* kBeginKind = "begin";
-inline constexpr std::array kCommandKinds{"take", "place", "help"};  ///< Of TickCommand::Kind.
+inline constexpr std::array kCommandKinds{"take", "place",
+                                          "help"};  ///< Names of TickCommand::Kind.
 
 /** How a stretch begins: each hand's options, and where all parts are. */
 struct Beginning {

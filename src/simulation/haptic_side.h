@@ -70,8 +70,7 @@ class HapticSide {
  private:
   struct Hand {
     Hand(std::size_t i, const haptics::TickOptions& options, contact::Scene* scene)
-        : index(i),
-          tick(options, scene, i) {}
+        : index(i), tick(options, scene, i) {}
 
     const std::size_t index;
     haptics::HapticTick tick;

@@ -100,7 +100,7 @@ class PartRun : public Sink {
    @param limit_s  Of session time [s]. */
   [[nodiscard]] Execution MakeExecution(const Operators& hands, double limit_s);
 
-  /** The same for a simulation with one hand. */
+  /** Describes the run of a simulation with one hand. */
   [[nodiscard]] Execution MakeExecution(Operator* hand, double limit_s) {
     return MakeExecution(Operators{hand}, limit_s);
   }

@@ -22,7 +22,8 @@ namespace hvas::simulation {
 
  Up to haptics::kMaxHands hands work in one scene. What one holds is an obstacle for the others, and
  cannot be taken by them; mates are those with parts that are in their place when a part is taken,
- not with what another hand holds. A loose part that moves belongs to the hand whose part woke it. */
+ not with what another hand holds. A loose part that moves belongs to the hand whose part woke it.
+ */
 class Simulation {
  public:
   // X4 asks for 100 Hz and 30 Hz.

@@ -304,9 +304,8 @@ Result<Json> Hub::DoLook(const Caller& caller, const protocol::LookCommand& comm
 
 Result<Json> Hub::DoAddNote(const Caller& caller, const protocol::AddNoteCommand& command) {
   const std::string& name = clients_[caller.id].name;
-  const auto id =
-      workbench_->notes().Add({name.empty() ? caller.id : name, command.text,
-                               product::OccurrenceId(command.occurrence), command.p_B});
+  const auto id = workbench_->notes().Add({name.empty() ? caller.id : name, command.text,
+                                           product::OccurrenceId(command.occurrence), command.p_B});
   return id ? Result<Json>(Json{{"note", *id}}) : Result<Json>(Unexpected(id.error()));
 }
 

@@ -16,7 +16,7 @@ namespace hvas::studio {
 class HandRack {
  public:
   static constexpr const char* kPointer = "pointer";  ///< Address for a hand without a device.
-  static constexpr std::size_t kMaxHands = haptics::kMaxHands;
+  static constexpr std::size_t kMaxHands = haptics::kMaxHands;  ///< The tick's own limit.
 
   [[nodiscard]] std::size_t count() const;
 

@@ -268,9 +268,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** All others have to leave, and their links are void. */
   void EndSharing(const Json& /*body*/) {
     if (!shared_->access->EndSharing(cookie_)) {
-      return Refuse(http::status::forbidden,
-                    {ErrorCode::kInvalid, "only the user who started this studio can end the sharing",
-                     "", "ask that user, or close this page to leave"});
+      return Refuse(
+          http::status::forbidden,
+          {ErrorCode::kInvalid, "only the user who started this studio can end the sharing", "",
+           "ask that user, or close this page to leave"});
     }
     shared_->SaveAccessState();
     shared_->UpdateParticipantLink();

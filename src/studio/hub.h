@@ -29,6 +29,7 @@ class ClientLink {
   virtual void SendText(std::string text) = 0;
   virtual void SendFrames(std::string bytes) = 0;
   virtual void Close(const std::string& reason) = 0;
+
   /** Whether the client's browser may still come in; a link may have been revoked. */
   [[nodiscard]] virtual bool is_admitted() const { return true; }
 };
@@ -45,7 +46,8 @@ struct Example {
 class Hub {
  public:
   static constexpr std::size_t kMaxClients = 16;  ///< Pages that see one scene: a choice.
-  /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second. */
+  /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second.
+   */
   static constexpr std::size_t kMaxUnseen = 8;
   /** Sustained rate for one client (token bucket). */
   static constexpr double kCommandsPerSecond = 50;

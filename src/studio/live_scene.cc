@@ -27,7 +27,7 @@ Json MakePlacementEvent(std::size_t occurrence, const simulation::PartState& par
 }
 
 std::array<double, haptics::kMaxHands> CalcHandSpeeds(const simulation::Frame& before,
-                                     const simulation::Frame& after) {
+                                                      const simulation::Frame& after) {
   std::array<double, haptics::kMaxHands> speeds{};
   const double elapsed = 1e-9 * static_cast<double>(after.t_ns - before.t_ns);
   for (std::size_t i = 0; i < after.ticks.size(); ++i) {

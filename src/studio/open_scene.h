@@ -37,9 +37,10 @@ struct LiveFrame {
   std::uint32_t epoch{0};
   std::uint64_t serial{0};  ///< Differs for each frame.
   simulation::Frame frame;
-  std::int64_t clock_ns{0};            ///< MonotonicNs() at its tick.
-  PeakForces peak_felt{};              ///< Largest since the previous frame, by hand [N].
-  std::array<double, haptics::kMaxHands> hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
+  std::int64_t clock_ns{0};  ///< MonotonicNs() at its tick.
+  PeakForces peak_felt{};    ///< Largest since the previous frame, by hand [N].
+  std::array<double, haptics::kMaxHands>
+      hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
 };
 
 }  // namespace hvas::studio

@@ -5,7 +5,7 @@
 
 namespace hvas::studio {
 
-inline constexpr std::size_t kMaxRecentFiles = 6;  ///< As many as a start page shows: a choice.
+inline constexpr std::size_t kMaxRecentFiles = 6;  ///< The start page shows so many: a choice.
 
 /** Reads which CAD files were opened last, newest first; those that are gone are left out. A list
  that is missing or damaged is empty. */

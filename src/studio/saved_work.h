@@ -16,7 +16,7 @@ struct SavedWork {
   std::string digest;          ///< CalcProductDigest of the product as opened.
   std::vector<Json> edits;     ///< Commands of edits, in order.
   LiveState state;
-  std::vector<Json> notes;  ///< As in the event "notes".
+  std::vector<Json> notes;  ///< Notes of WorkbenchNotes::List().
 };
 
 /** Computes the digest of parts, meshes, mates and fits: all that edits and poses refer to. */

@@ -137,8 +137,7 @@ Result<TakenParts> WorkbenchHands::Help(std::size_t hand, std::size_t other) {
   SequenceStep step;
   step.occurrence = tick.occurrence;
   step.members = frame.members[other];
-  const spatial::Pose X_WH(tick.X_WD *
-                           simulation::CombineMass((*run)->model(), step).p_BoBcm_B);
+  const spatial::Pose X_WH(tick.X_WD * simulation::CombineMass((*run)->model(), step).p_BoBcm_B);
   (*run)->Help(hand, other, X_WH);
   return TakenParts{X_WH, step, {}};
 }

@@ -41,8 +41,8 @@ class WorkbenchHands final : public SceneObserver {
       simulation::TakeExtent extent = simulation::TakeExtent::kWhole);
   void Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
   [[nodiscard]] Result<void> Release(std::size_t hand);
-  /** Takes hold, with a hand, of what another one holds as well. Errors: as of HandOver, and kInvalid
-   where a third hand has hold of it already. */
+  /** Takes hold, with a hand, of what another one holds as well. Errors: as of HandOver, and
+   kInvalid where a third hand has hold of it already. */
   [[nodiscard]] Result<TakenParts> Help(std::size_t hand, std::size_t other);
   /** Passes what a hand holds into another one. Errors: kInvalid where the first one holds nothing,
    the second one holds something, or either has a device, whose grip is its user's. */

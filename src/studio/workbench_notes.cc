@@ -38,8 +38,9 @@ Result<std::string> WorkbenchNotes::Add(const Remark& remark) {
   {
     const std::lock_guard lock(mutex_);
     if (notes_.size() >= kMaxNotes) {
-      return Fail(ErrorCode::kOutOfResource, fmt::format("there are {} notes, the maximum", kMaxNotes),
-                  "", "remove a note first");
+      return Fail(ErrorCode::kOutOfResource,
+                  fmt::format("there are {} notes, the maximum", kMaxNotes), "",
+                  "remove a note first");
     }
     id = fmt::format("n{}", ++last_id_);
     notes_.push_back({{"id", id},

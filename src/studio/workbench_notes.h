@@ -19,7 +19,7 @@ namespace hvas::studio {
  record of a session has them. Any thread may call any function. */
 class WorkbenchNotes final : public SceneObserver {
  public:
-  static constexpr std::size_t kMaxNotes = 200;  ///< Of one product: a choice.
+  static constexpr std::size_t kMaxNotes = 200;  ///< Notes on one product: a choice.
 
   WorkbenchNotes(const LiveScene* live, const EventBus* events) : live_(live), events_(events) {}
 
@@ -28,12 +28,12 @@ class WorkbenchNotes final : public SceneObserver {
     std::string by;  ///< Who has written it.
     std::string text;
     product::OccurrenceId occurrence;
-    Vec3 p_B{Vec3::Zero()};  ///< In the part's frame.
+    Vec3 p_B{Vec3::Zero()};  ///< Place of the pin, in the part's frame.
   };
 
-  /** Pins a note to a part. Reports by the event "notes". @returns its id. Errors: kNotFound without
-   a scene or such a part; kInvalid for a text without a visible character; kOutOfResource beyond
-   kMaxNotes. */
+  /** Pins a note to a part. Reports by the event "notes". @returns its id. Errors: kNotFound
+   without a scene or such a part; kInvalid for a text without a visible character; kOutOfResource
+   beyond kMaxNotes. */
   [[nodiscard]] Result<std::string> Add(const Remark& remark);
 
   /** Takes a note away. Reports by the event "notes". Errors: kNotFound for an unknown id. */
@@ -57,7 +57,7 @@ class WorkbenchNotes final : public SceneObserver {
   const EventBus* const events_;
 
   mutable std::mutex mutex_;  ///< Protects what follows.
-  std::vector<Json> notes_;   ///< As in the event "notes".
+  std::vector<Json> notes_;   ///< Items of the event "notes".
   std::string digest_;        ///< OpenScene::digest of the product that they are for.
   std::uint32_t last_id_{0};
 };

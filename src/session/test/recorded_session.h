@@ -30,7 +30,8 @@ struct Stretch {
   explicit Stretch(const std::shared_ptr<const simulation::Model>& model, std::size_t hands,
                    simulation::Sink* sink, const haptics::TickOptions& options = {})
       : simulation(hands == 1 ? std::make_unique<simulation::Simulation>(model, options)
-                              : std::make_unique<simulation::Simulation>(model, std::vector{options, options})),
+                              : std::make_unique<simulation::Simulation>(
+                                    model, std::vector{options, options})),
         first({}, 1, simulation::StartOfHand(*model)),
         second({}, 2, simulation::StartOfHand(*model)),
         run(simulation.get(), simulation::Persons{&first, hands == 2 ? &second : nullptr}, sink) {}

@@ -155,9 +155,8 @@ TEST(SharedHoldTest, RandomHandlingByTwoStaysSafeAndRunsAgain) {
   for (int i = 0; i < 200; ++i) {
     std::vector<Vec3> v;
     for (std::size_t hand = 0; hand < 2; ++hand) {
-      const Vec3 p_to =
-          p_first[hand] +
-          0.01 * Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1));
+      const Vec3 p_to = p_first[hand] + 0.01 * Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1),
+                                                    random.Uniform(-1, 1));
       v.push_back((p_to - hands.states[hand].X_DH.p()) / 0.1);
     }
     hands.Run(0.1, v);
@@ -202,9 +201,9 @@ TEST(EightHandsTest, RandomHandlingStaysSafeAndRunsAgain) {
       v.push_back(wanted);
     }
     hands.Run(0.1, v);
-    touching += static_cast<std::size_t>(std::count_if(
-        hands.out.begin(), hands.out.end(),
-        [](const haptics::TickOutput& out) { return out.contact_count > 0; }));
+    touching += static_cast<std::size_t>(
+        std::count_if(hands.out.begin(), hands.out.end(),
+                      [](const haptics::TickOutput& out) { return out.contact_count > 0; }));
   }
   EXPECT_GT(touching, 60u) << "the blocks have to meet for this to be a test";
   for (std::size_t hand = 0; hand < kHands; ++hand) {

@@ -289,8 +289,9 @@ TEST_F(HubTest, ThreeHandsTakeAPartEachAndANinthIsRefused) {
       [](const Json& e) { return e["event"] == "hands" && e["hands"].size() == 3; }, start));
   FakeLink second;
   const std::string b = Join(Role::kOperator, &second);
-  EXPECT_EQ(Ask(a, &first, {{"command", "lease"}, {"action", "give"}, {"to", b}, {"hand", 2}})["ok"],
-            true);
+  EXPECT_EQ(
+      Ask(a, &first, {{"command", "lease"}, {"action", "give"}, {"to", b}, {"hand", 2}})["ok"],
+      true);
   // Control is that of whoever leads hand 0; the third hand stays with whom it was given to.
   FakeLink third;
   const std::string c = Join(Role::kOperator, &third);
@@ -306,10 +307,11 @@ TEST_F(HubTest, OthersSeeNamesAndWhatIsLookedAt) {
   FakeLink second;
   const std::string a = Join(Role::kOperator, &first);
   const std::string b = Join(Role::kViewer, &second);
-  EXPECT_EQ(Ask(a, &first, {{"command", "introduce"}, {"name", "  Ada\n<b>Byron\x7f "}})["ok"], true);
+  EXPECT_EQ(Ask(a, &first, {{"command", "introduce"}, {"name", "  Ada\n<b>Byron\x7f "}})["ok"],
+            true);
   EXPECT_EQ(second.Last("roles")["clients"][0]["name"], "Ada <b>Byron");
-  EXPECT_TRUE(IsError(
-      Ask(a, &first, {{"command", "introduce"}, {"name", std::string(41, 'x')}}), "invalid"));
+  EXPECT_TRUE(IsError(Ask(a, &first, {{"command", "introduce"}, {"name", std::string(41, 'x')}}),
+                      "invalid"));
   const Json look{{"command", "look"}, {"eye", {0, -1, 0.5}}, {"target", {0, 0, 0}}};
   EXPECT_EQ(Ask(b, &second, look)["ok"], true);
   EXPECT_EQ(first.Last("looking")["client"], b);
@@ -330,8 +332,11 @@ TEST_F(HubTest, NotesArePinnedToPartsAndSeenByAll) {
   const std::string a = Join(Role::kOperator, &first);
   const std::string v = Join(Role::kViewer, &viewer);
   const auto add = [&](const std::string& by, FakeLink* link, Json occurrence, const char* text) {
-    return Ask(by, link, {{"command", "add_note"}, {"occurrence", occurrence}, {"p_B", {0, 0, 0.01}},
-                          {"text", text}});
+    return Ask(by, link,
+               {{"command", "add_note"},
+                {"occurrence", occurrence},
+                {"p_B", {0, 0, 0.01}},
+                {"text", text}});
   };
   const std::size_t start = log_.size();
   const Json reply = add(a, &first, 1, "Deburr this edge");
@@ -539,7 +544,8 @@ TEST_F(HubTest, AtMostSoManyFrameMessagesWaitToBeSeen) {
   Credit(id, HeaderOf(link.frames[Hub::kMaxUnseen - 1]).seq);
   ASSERT_EQ(link.frames.size(), Hub::kMaxUnseen + 1);  // at once
   const protocol::Header newest = HeaderOf(link.frames[Hub::kMaxUnseen]);
-  EXPECT_GT(newest.t_ns - HeaderOf(link.frames[Hub::kMaxUnseen - 1]).t_ns, 100'000'000);  // not what was missed
+  EXPECT_GT(newest.t_ns - HeaderOf(link.frames[Hub::kMaxUnseen - 1]).t_ns,
+            100'000'000);       // not what was missed
   EXPECT_LT(newest.count, 2u);  // the block stands in its fixture
 }
 

@@ -181,8 +181,8 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(Do({{"command", "status"}}).is_null());
   EXPECT_FALSE(Do({{"command", "introduce"}, {"name", "Ada"}}).is_null());
   const Json eye = Json::array({0, -1, 0.5});
-  EXPECT_FALSE(
-      DoAs("c2", &other_link_, {{"command", "look"}, {"eye", eye}, {"target", {0, 0, 0}}}).is_null());
+  EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "look"}, {"eye", eye}, {"target", {0, 0, 0}}})
+                   .is_null());
   const Json note{{"command", "add_note"}, {"occurrence", 1}, {"p_B", {0, 0, 0}}, {"text", "Here"}};
   const Json noted = Do(note);
   ASSERT_FALSE(noted.is_null());
