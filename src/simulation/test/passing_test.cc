@@ -385,7 +385,7 @@ TEST(PassingDisassemblyTest, X16ABoltIsSlidAsideForThePlateAndComesOutLast) {
   }
   EXPECT_EQ(kinds, (std::vector<Kind>{Kind::kAside, Kind::kRemove, Kind::kReturn, Kind::kRemove}));
   EXPECT_EQ(names, (std::vector<std::string>{"bolt", "plate", "bolt", "bolt"}));
-  Simulation simulation(model, {});
+  Simulation simulation(model, haptics::TickOptions());
   PutAllInPlace(&simulation);
   SimulatedPerson person({}, 1, StartOfHand(*model));
   DisassemblyRun run(&simulation, &plan, &person, nullptr);

@@ -225,7 +225,7 @@ double HeightOverTable(const Simulation& simulation) {
 }
 
 TEST(SimulationTest, DroppedPartFallsToTheTableAndComesToRest) {
-  Simulation simulation(PegInBlockModel(), {});
+  Simulation simulation(PegInBlockModel(), haptics::TickOptions());
   ScriptedHand hand(&simulation);
   TakePegUp(&simulation, &hand);
   hand.state.is_gripping = false;
@@ -253,7 +253,7 @@ TEST(SimulationTest, DroppedPartFallsToTheTableAndComesToRest) {
 }
 
 TEST(SimulationTest, HandThatClosesOnNothingTakesNothing) {
-  Simulation simulation(PegInBlockModel(), {});
+  Simulation simulation(PegInBlockModel(), haptics::TickOptions());
   ScriptedHand hand(&simulation);
   const Vec3 p_WCm = simulation.physics().pose(kPeg) * PegInBlockModel()->bodies[1].mass.p_BoBcm_B;
   hand.state.X_DH = Pose(p_WCm + Vec3(0, 0, 60e-3));
@@ -272,7 +272,7 @@ TEST(SimulationTest, HandThatClosesOnNothingTakesNothing) {
 }
 
 TEST(SimulationTest, LostDeviceFadesToZeroAndKeepsThePart) {  // N6
-  Simulation simulation(PegInBlockModel(), {});
+  Simulation simulation(PegInBlockModel(), haptics::TickOptions());
   ScriptedHand hand(&simulation);
   TakePegUp(&simulation, &hand);
   // A pull to the side, so that there is a force to lose.
@@ -292,7 +292,7 @@ TEST(SimulationTest, LostDeviceFadesToZeroAndKeepsThePart) {  // N6
 }
 
 TEST(SimulationTest, FramesShowEveryPartWhereItIs) {
-  Simulation simulation(PegInBlockModel(), {});
+  Simulation simulation(PegInBlockModel(), haptics::TickOptions());
   const Frame& first = simulation.Publish();
   ASSERT_EQ(first.X_WB.size(), 2u);
   EXPECT_EQ(first.X_WB[1].p(), PegInBlockModel()->bodies[1].X_WB_start.p());

@@ -7,6 +7,7 @@ import { clearPicks } from "../model/view_state";
 import type { FaceOf } from "../protocol/messages";
 import { canSteer, store, studio, view, viewport } from "./app_state";
 import { number, t } from "./i18n";
+import { GroupLabels } from "./group_labels";
 import { Icon } from "./icons";
 import { useLive } from "./live";
 import { QuantityEntry } from "./quantity_entry";
@@ -264,6 +265,7 @@ export function ViewPanels() {
       {tool === "mate" ? <MatePanel /> : null}
       {tool !== "mate" && tool !== "measure" ? <PathPanel /> : null}
       <MeasureLabel />
+      <GroupLabels />
       <PeopleMarks />
       <Legend />
       <FinishCard />
