@@ -222,7 +222,7 @@ haptics::TickOutput HapticSide::RunTick(Hand* hand, const device::DeviceState& d
   if (device.is_valid && !device.is_gripping) {
     hand->tick.StopHelping();
   }
-  const haptics::TickOutput out = hand->tick.Tick(device, context, ListExchanges(*hand));
+  haptics::TickOutput out = hand->tick.Tick(device, context, ListExchanges(*hand));
   UpdateMetrics(hand, device.t_ns, out);
   ReportChanges(hand, device, out);
   HandReport report;

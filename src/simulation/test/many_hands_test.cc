@@ -30,7 +30,9 @@ class ManyHandsTest : public ::testing::TestWithParam<Row> {};
 
 // X7: the order in which the hands tick, and who solves which contact, is not felt.
 TEST_P(ManyHandsTest, BlockBetweenTwoOthersIsPushedFromBothSides) {
-  const auto [middle, left, right] = GetParam();
+  const std::size_t middle = GetParam().middle;
+  const std::size_t left = GetParam().left;
+  const std::size_t right = GetParam().right;
   MovedHands hands(testing::MakeBlocks(3), 3);
   for (std::size_t hand = 0; hand < 3; ++hand) {
     hands.Take(hand, OccurrenceId(hand));

@@ -103,12 +103,12 @@ TEST_F(ServerTest, FramesComeWithCreditOnly) {
     return std::nullopt;
   };
   std::uint32_t seq = 0;
-  for (int i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < Hub::kMaxUnseen; ++i) {
     const auto message = next_frame();
     ASSERT_TRUE(message);
     std::memcpy(&seq, message->bytes.data() + offsetof(protocol::Header, seq), sizeof(seq));
   }
-  // No third one, until the second has been seen: a status comes every second, and no frame before.
+  // No further one, until these have been seen: a status comes every second, and no frame before.
   for (int statuses = 0; statuses < 2;) {
     const auto message = client->ReadMessage();
     ASSERT_TRUE(message);
