@@ -56,8 +56,9 @@ struct BrokenEdges {
   spatial::Pose X_WH_ahead;  ///< Where the held part will be next, as far as is known.
 };
 
-inline constexpr std::size_t kMaxLeftOut =
-    9;  ///< Lists of bodies that a query leaves out: a choice.
+/** Lists of bodies that a query leaves out: one of what moves with the part, and eight. A choice.
+ */
+inline constexpr std::size_t kMaxLeftOut = 9;
 
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].

@@ -10,6 +10,7 @@
 
 #include "evidence/hdf5_writer.h"
 #include "evidence/output_file.h"
+#include "evidence/session_data.h"
 #include "haptics/tick_output.h"
 #include "session/recorded_model.h"
 #include "simulation/sequence.h"
@@ -32,7 +33,7 @@ class HoldGatherer {
       : product_(product), found_(*found) {}
 
   void Add(const record::TickRecord& tick) {
-    Open& open = open_.at(tick.hand);
+    Open& open = open_[HandOf(tick)];
     if (open.occurrence != tick.held) {
       Close(&open);
       open.occurrence = tick.held;
@@ -71,7 +72,7 @@ class HoldGatherer {
 
   const product::Product& product_;
   std::vector<Demonstration>& found_;
-  std::array<Open, 2> open_;
+  std::array<Open, haptics::kMaxHands> open_;
 };
 
 /** Poses of a part from outside to its place. */

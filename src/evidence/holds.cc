@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "evidence/session_data.h"
 #include "haptics/haptic_tick.h"
 
 namespace hvas::evidence {
@@ -36,7 +37,7 @@ void Begin(const TickRecord& tick, const Vec3& p, Present* present, std::vector<
   present->last_contact_ns = tick.t_ns - kQuietNs;
   Hold& hold = holds->emplace_back();
   hold.occurrence = tick.held;
-  hold.hand = tick.hand;
+  hold.hand = static_cast<std::uint8_t>(HandOf(tick));
   hold.start_ns = tick.t_ns;
 }
 
@@ -66,9 +67,9 @@ void Follow(const TickRecord& tick, const Vec3& p, Present* present, Hold* hold)
 Result<std::vector<Hold>> FindHolds(record::Reader* reader, const record::Reader::Span& span,
                                     const std::function<Vec3(std::uint32_t occurrence)>& p_BQ) {
   std::vector<Hold> holds;
-  std::array<Present, 2> hands;
+  std::array<Present, haptics::kMaxHands> hands;
   const Result<void> done = reader->ForEachTick(span, [&](const TickRecord& tick) {
-    Present& present = hands[tick.hand == 0 ? 0 : 1];
+    Present& present = hands[HandOf(tick)];
     const Vec3 p =
         tick.held == record::kNoOccurrence ? Vec3::Zero() : Vec3(tick.X_WD * p_BQ(tick.held));
     if (tick.held != present.occurrence) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "evidence/demonstrations.h"
@@ -172,8 +173,15 @@ Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
   McapWriter writer(&*output);
   const std::string any = Dump({{"type", "object"}});
   const std::string tick_schema = Dump(MakeTickSchema());
-  const std::array<std::uint16_t, 2> hands{writer.AddChannel("/hand0", "hvas.Tick", tick_schema),
-                                           writer.AddChannel("/hand1", "hvas.Tick", tick_schema)};
+  std::array<std::uint16_t, haptics::kMaxHands> hands{};  // Channels; 0: none yet.
+  const auto channel_of = [&](std::size_t hand) {
+    if (hands[hand] == 0) {
+      hands[hand] = writer.AddChannel(fmt::format("/hand{}", hand), "hvas.Tick", tick_schema);
+    }
+    return hands[hand];
+  };
+  (void)channel_of(0);
+  (void)channel_of(1);  // Readers may expect both, as records had two hands at most.
   const std::uint16_t transforms = writer.AddChannel("/tf", "foxglove.FrameTransforms", any);
   const std::uint16_t log = writer.AddChannel("/events", "foxglove.Log", any);
   std::size_t next = 0;
@@ -184,7 +192,7 @@ Result<void> WriteMcap(record::Reader* reader, const Selection& selection,
   };
   const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
     add_events_until(tick.t_ns);
-    writer.Add(hands[tick.hand == 0 ? 0 : 1], tick.t_ns, Dump(MakeTickMessage(tick, paths)));
+    writer.Add(channel_of(HandOf(tick)), tick.t_ns, Dump(MakeTickMessage(tick, paths)));
     writer.Add(transforms, tick.t_ns, Dump(MakeTransforms(tick, paths)));
   });
   add_events_until(selection.span.last_ns);

@@ -1,11 +1,13 @@
 #include "evidence/session_data.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "haptics/constraint_solver.h"
 #include "session/json_values.h"
 
 namespace hvas::evidence {
@@ -16,7 +18,7 @@ using T = const TickRecord&;
 
 constexpr std::array kColumns{
     Column{"time_s", "s", "session time", [](T t) { return 1e-9 * static_cast<double>(t.t_ns); }},
-    Column{"hand", "1", "0 or 1", [](T t) { return static_cast<double>(t.hand); }},
+    Column{"hand", "1", "index of the hand", [](T t) { return static_cast<double>(t.hand); }},
     Column{
         "occurrence", "1", "id of the part in the hand; -1: none",
         [](T t) { return t.held == record::kNoOccurrence ? -1.0 : static_cast<double>(t.held); }},
@@ -82,6 +84,16 @@ constexpr std::array kColumns{
 };
 
 }  // namespace
+
+std::size_t HandOf(const TickRecord& tick) {
+  return std::min<std::size_t>(tick.hand, haptics::kMaxHands - 1);
+}
+
+const char* OrdinalOfHand(std::size_t hand) {
+  constexpr std::array<const char*, haptics::kMaxHands> kOrdinals{
+      "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"};
+  return kOrdinals.at(hand);
+}
 
 std::span<const Column> TickColumns() {
   return kColumns;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -23,6 +24,12 @@ struct Column {
 
 /** All that a tick has, times first. */
 [[nodiscard]] std::span<const Column> TickColumns();
+
+/** Which hand a tick is of, below haptics::kMaxHands also where the record is damaged. */
+[[nodiscard]] std::size_t HandOf(const record::TickRecord& tick);
+
+/** "first", "second" and so on, for people. */
+[[nodiscard]] const char* OrdinalOfHand(std::size_t hand);
 
 /** Which ticks are taken. */
 struct Selection {

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evidence/session_data.h"
 #include "session/json_values.h"
 #include "session/recorded_model.h"
 #include "session/session_recorder.h"
@@ -74,9 +75,9 @@ Result<void> ReadHands(record::Reader* reader, Summary* summary) {
     std::int64_t last_ns{0};
   };
 
-  std::array<Reading, 2> readings;
+  std::array<Reading, haptics::kMaxHands> readings;
   Result<void> done = reader->ForEachTick({}, [&](const TickRecord& tick) {
-    Reading& reading = readings[tick.hand == 0 ? 0 : 1];
+    Reading& reading = readings[HandOf(tick)];
     HandSummary& hand = reading.hand;
     reading.first_ns = hand.ticks == 0 ? tick.t_ns : reading.first_ns;
     reading.last_ns = tick.t_ns;

@@ -126,6 +126,8 @@ void ContactStep::FillExchange(std::size_t to, HandExchange* exchange) const noe
   exchange->contact = part.mutual;
 }
 
+static_assert(contact::kMaxLeftOut == 1 + kMaxHands);
+
 ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::size_t member,
                                                   const spatial::Pose& X_WB,
                                                   double margin) noexcept {

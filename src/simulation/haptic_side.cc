@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.h"
 #include "simulation/actual_faces.h"
 #include "simulation/fit_of_mate.h"
 #include "simulation/load_shedder.h"
@@ -33,6 +34,7 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeContactFaces(
 HapticSide::HapticSide(const Model& model, const std::vector<haptics::TickOptions>& hands,
                        Handover* handover)
     : handover_(*handover) {
+  HVAS_DEMAND(!hands.empty() && hands.size() <= haptics::kMaxHands);
   for (const haptics::TickOptions& options : hands) {
     hands_.emplace_back(hands_.size(), options, &scene_);
   }

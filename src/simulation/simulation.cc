@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "base/check.h"
-
 namespace hvas::simulation {
 namespace {
 
@@ -28,9 +26,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model,
       handover_(model_->bodies.size(), hands.size()),
       frames_(MakeFirstFrame(*model_, hands.size())),
       haptics_(*model_, hands, &handover_),
-      physics_(model_, hands, &handover_, &frames_) {
-  HVAS_DEMAND(!hands.empty() && hands.size() <= haptics::kMaxHands);
-}
+      physics_(model_, hands, &handover_, &frames_) {}
 
 const Frame& Simulation::Publish() {
   frames_.Update();

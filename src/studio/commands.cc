@@ -257,12 +257,10 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
     return RequestLease(
         caller, command.hand ? std::vector<std::size_t>{*command.hand} : ListHandsInControl());
   }
-  const std::vector<std::size_t> own = HandsOf(caller.id);
-  const std::vector<std::size_t> hands =
-      command.hand ? std::vector<std::size_t>{*command.hand} : own;
-  std::vector<std::size_t> given;
-  std::set_intersection(own.begin(), own.end(), hands.begin(), hands.end(),
-                        std::back_inserter(given));
+  std::vector<std::size_t> given = HandsOf(caller.id);
+  if (command.hand) {
+    std::erase_if(given, [&](std::size_t hand) { return hand != *command.hand; });
+  }
   if (given.empty()) {
     return Fail(ErrorCode::kInvalid, "only the client that has the lease can give it or release it",
                 protocol::kLeaseActions[static_cast<std::size_t>(command.action)],

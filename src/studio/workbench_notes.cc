@@ -10,6 +10,18 @@
 
 namespace hvas::studio {
 
+namespace {
+
+Json MakeNote(const std::string& id, const WorkbenchNotes::Remark& remark) {
+  return {{"id", id},
+          {"by", remark.by},
+          {"text", remark.text},
+          {"occurrence", remark.occurrence.index()},
+          {"p_B_m", ToJson(remark.p_B)}};
+}
+
+}  // namespace
+
 std::string MakeOneLine(std::string_view text) {
   constexpr char kDelete = 0x7F;
   std::string line(text);
@@ -43,11 +55,7 @@ Result<std::string> WorkbenchNotes::Add(const Remark& remark) {
                   "remove a note first");
     }
     id = fmt::format("n{}", ++last_id_);
-    notes_.push_back({{"id", id},
-                      {"by", remark.by},
-                      {"text", text},
-                      {"occurrence", remark.occurrence.index()},
-                      {"p_B_m", ToJson(remark.p_B)}});
+    notes_.push_back(MakeNote(id, {remark.by, text, remark.occurrence, remark.p_B}));
   }
   events_->Publish(MakeEvent());
   return id;
@@ -91,11 +99,8 @@ void WorkbenchNotes::Restore(const std::vector<Json>& notes) {
       const auto p_B = Vec3At(note, "p_B_m");
       if (text && by && occurrence && p_B && *occurrence < scene->model->bodies.size() &&
           notes_.size() < kMaxNotes) {
-        notes_.push_back({{"id", fmt::format("n{}", ++last_id_)},
-                          {"by", *by},
-                          {"text", *text},
-                          {"occurrence", *occurrence},
-                          {"p_B_m", ToJson(*p_B)}});
+        notes_.push_back(MakeNote(fmt::format("n{}", ++last_id_),
+                                  {*by, *text, product::OccurrenceId(*occurrence), *p_B}));
       }
     }
   }

@@ -2,7 +2,7 @@
 //   node tools/pictures.mjs [--out ../docs/pictures/studio] [--only phone]
 // The program is build/dev/src/app/hvas, as for the tests of the page.
 
-import { mkdirSync, mkdtempSync } from "node:fs";
+import { mkdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
@@ -27,7 +27,9 @@ const kDesk = { viewport: { width: 1280, height: 760 } };
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kTablet = { viewport: { width: 820, height: 1180 }, hasTouch: true, isMobile: true };
 const kQuality = 72;
-const kStudy = ["--study", "xia-2011", "--participant", "P01", "-o", join(mkdtempSync(join(tmpdir(), "hvas-pictures-")), "study")];
+/** The page shows where the results of a study are. */
+const kResults = join(tmpdir(), "xia-2011");
+const kStudy = ["--study", "xia-2011", "--participant", "P01", "-o", kResults];
 
 /** Somebody who has put a part in by hand before is not guided any more. */
 const leaveUnguided = (page) => page.addInitScript(() => localStorage.getItem("hvas-studio") ?? localStorage.setItem("hvas-studio", '{"guidesFirstPart":false}'));
@@ -125,6 +127,7 @@ mkdirSync(options.out, { recursive: true });
 const browser = await launchBrowser();
 for (const { name, product, screen, act, isGuided = false, isStudy = false } of kStates.filter((each) => each.name.includes(options.only))) {
   for (const colorScheme of ["light", "dark"]) {
+    rmSync(kResults, { recursive: true, force: true });
     const studio = await startStudio(isStudy ? kStudy : product === null ? [] : [`../products/${product}.step`]);
     const beforeLoad = isGuided ? null : leaveUnguided;
     const { page } = await openPage(browser, studio.operator, { ...screen, colorScheme, isPlain: false, reducedMotion: "reduce", beforeLoad });

@@ -78,7 +78,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
 /** Prints how forces are rendered with each device. */
 void ShowNotes(const std::vector<assembly::DeviceInHand>& devices) {
   for (const assembly::DeviceInHand& device : devices) {
-    const char* whose = devices.size() == 1 ? "" : NameOfHand(device.hand);
+    const std::string whose = devices.size() == 1 ? "" : NameOfHand(device.hand);
     for (const std::string& note : device.notes) {
       fmt::print(stderr, "hvas: {}{}{}: {}\n", whose, devices.size() == 1 ? "" : ": ", device.model,
                  note);

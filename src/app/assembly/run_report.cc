@@ -8,6 +8,7 @@
 #include "app/output/text_layout.h"
 #include "app/product/product_json.h"
 #include "base/units.h"
+#include "evidence/session_data.h"
 #include "haptics/free_bodies.h"
 #include "simulation/shapes.h"
 
@@ -100,8 +101,8 @@ void PrintDevices(const RunOutcome& outcome) {
 
 }  // namespace
 
-const char* NameOfHand(std::size_t hand) {
-  return hand == 0 ? "first hand" : "second hand";
+std::string NameOfHand(std::size_t hand) {
+  return fmt::format("{} hand", evidence::OrdinalOfHand(hand));
 }
 
 const std::string& PathOf(const Model& model, product::OccurrenceId id) {

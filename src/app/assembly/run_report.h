@@ -21,8 +21,8 @@ struct SessionReport {
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
 };
 
-/** "first hand", "second hand". */
-[[nodiscard]] const char* NameOfHand(std::size_t hand);
+/** A hand in words: "first hand". */
+[[nodiscard]] std::string NameOfHand(std::size_t hand);
 
 /** Path of a part; "empty hand" where there is none. */
 [[nodiscard]] const std::string& PathOf(const simulation::Model& model, product::OccurrenceId id);

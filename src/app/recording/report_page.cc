@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <ctime>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "base/units.h"
 #include "evidence/picture.h"
+#include "evidence/session_data.h"
 #include "pages/embedded_image.h"
 #include "pages/html_page.h"
 #include "pages/svg_plot.h"
@@ -198,7 +200,7 @@ std::string MakeSequence(const Summary& summary) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.3f}</td><td>{:.4g}</td>"
         "<td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{:.2f}</td><td class=\"{}\">{}</td></tr>",
-        Escape(NameOf(summary, hold.occurrence)), hold.hand == 0 ? "first" : "second",
+        Escape(NameOf(summary, hold.occurrence)), evidence::OrdinalOfHand(hold.hand),
         1e-9 * static_cast<double>(hold.start_ns),
         1e-9 * static_cast<double>(hold.end_ns - hold.start_ns), hold.path, hold.peak_true,
         hold.peak_felt, ToMm(hold.insertion), hold.collisions,
@@ -224,7 +226,10 @@ std::string MakeForces(const Summary& summary) {
       depth.points.push_back({bin.t, ToMm(bin.insertion)});
     }
     PlotFigure figure;
-    figure.title = summary.hands.size() == 1 ? "" : hand == 0 ? "First hand" : "Second hand";
+    if (summary.hands.size() > 1) {
+      figure.title = fmt::format("{} hand", evidence::OrdinalOfHand(hand));
+      figure.title.front() = static_cast<char>(std::toupper(figure.title.front()));
+    }
     const std::string x = "session time [s]";
     figure.panels.push_back({"Force rendered to the hand", x, "felt [N]", "", 1, {felt}, {}, {}});
     figure.panels.push_back({"True force", x, "true [N]", "", 1, {real}, {}, {}});

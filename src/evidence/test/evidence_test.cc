@@ -1,6 +1,7 @@
 // What is made of a record, read back by other means than what wrote it.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
+#include "evidence/demonstrations.h"
 #include "evidence/picture.h"
 #include "evidence/summary.h"
 #include "evidence/tables.h"
@@ -235,6 +237,64 @@ TEST_F(EvidenceTest, PictureShowsTheProductBeforeNothing) {
   // What is nearer to the eye, from the front above, is less deep.
   EXPECT_LT(projection.Project(Vec3(0, -1, 0)).z(), projection.Project(Vec3(0, 1, 0)).z());
   EXPECT_LT(projection.Project(Vec3(0, 0, 1)).y(), projection.Project(Vec3(0, 0, 0)).y());
+}
+
+/** A record of a tenth of a second in which one hand after the other holds the peg. */
+void RecordHands(const std::vector<std::uint8_t>& hands, const std::filesystem::path& path) {
+  constexpr int kTicksEach = 10;
+  record::RecorderOptions options;
+  options.path = path;
+  const auto recorder = record::Recorder::Create(
+      options, session::MakeModelMeta(*simulation::testing::PegInBlockModel()));
+  std::int64_t t_ns = 0;
+  for (const std::uint8_t holder : hands) {
+    for (int i = 0; i < kTicksEach; ++i, t_ns += 1'000'000) {
+      for (const std::uint8_t hand : hands) {
+        record::TickRecord tick;
+        tick.t_ns = t_ns;
+        tick.hand = hand;
+        tick.held = hand == holder ? 1 : record::kNoOccurrence;
+        ASSERT_TRUE((*recorder)->AddTick(tick));
+      }
+    }
+  }
+  ASSERT_TRUE((*recorder)->Finish().has_value());
+}
+
+TEST_F(EvidenceTest, EachHandOfARecordIsReadByItself) {
+  RecordHands({0, 1, 2, 7}, out / "hands");
+  ASSERT_FALSE(HasFatalFailure());
+  auto recorded = record::Reader::Open(out / "hands");
+  ASSERT_TRUE(recorded);
+  const auto summary = Summarise(&*recorded);
+  ASSERT_TRUE(summary) << summary.error().ToString();
+  ASSERT_EQ(summary->hands.size(), 4u);
+  for (const HandSummary& hand : summary->hands) {
+    EXPECT_EQ(hand.ticks, 40);
+  }
+  ASSERT_EQ(summary->holds.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(summary->holds[i].hand, (std::array{0, 1, 2, 7}[i]));
+  }
+  const auto demonstrations = ListDemonstrations(&*recorded, {});
+  ASSERT_TRUE(demonstrations);
+  EXPECT_EQ(demonstrations->size(), 4u);
+  ASSERT_TRUE(WriteMcap(&*recorded, {}, out / "hands.mcap"));
+  for (const char* topic : {"/hand0", "/hand1", "/hand2", "/hand7"}) {
+    EXPECT_NE(ReadAll(out / "hands.mcap").find(topic), std::string::npos) << topic;
+  }
+}
+
+TEST_F(EvidenceTest, HandThatNoSimulationHasIsReadAsTheLastOne) {
+  RecordHands({0, 200}, out / "damaged");
+  ASSERT_FALSE(HasFatalFailure());
+  auto recorded = record::Reader::Open(out / "damaged");
+  ASSERT_TRUE(recorded);
+  const auto summary = Summarise(&*recorded);
+  ASSERT_TRUE(summary);
+  ASSERT_EQ(summary->holds.size(), 2u);
+  EXPECT_EQ(summary->holds[1].hand, haptics::kMaxHands - 1);
+  EXPECT_TRUE(ListDemonstrations(&*recorded, {}));
 }
 
 }  // namespace

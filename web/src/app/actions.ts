@@ -60,12 +60,15 @@ function noteAsked(answer: CommandResults["lease"] | null): void {
 /** To whoever asked for it; a hand that is not there yet is made. */
 async function giveLease(): Promise<void> {
   const asked = store.leaseAsked.value;
-  const count = Math.min(...(asked?.hands ?? [])) + 1;
-  if (count > store.hands.value.length && asked !== null && (await studio.command({ command: "hands", count })) === null) {
+  if (asked === null) {
     return;
   }
-  for (const hand of asked?.hands.filter((each) => store.ownHands.value.includes(each)) ?? []) {
-    void studio.command({ command: "lease", action: "give", to: asked!.by, hand });
+  const count = Math.min(...asked.hands) + 1;
+  if (count > store.hands.value.length && (await studio.command({ command: "hands", count })) === null) {
+    return;
+  }
+  for (const hand of asked.hands.filter((each) => store.ownHands.value.includes(each))) {
+    void studio.command({ command: "lease", action: "give", to: asked.by, hand });
   }
 }
 

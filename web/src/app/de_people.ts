@@ -25,11 +25,4 @@ export const dePeople: Record<keyof typeof enPeople, string> = {
   "note.pin": "Anheften",
   "note.remove": "Entfernen",
   "note.of": "Notiz {n} zu {part}, von {by}",
-  "devices.moreHands": "{n} Hände",
-  "devices.addHand": "Hand hinzufügen",
-  "start.recent": "Zuletzt geöffnet",
-  "start.searching": "Kraftrückmeldegeräte werden gesucht…",
-  "start.found": "Angeschlossen: {devices}. Die Maus geht ebenso.",
-  "start.none": "Kein Kraftrückmeldegerät gefunden. Maus, Finger, SpaceMouse und VR-Controller gehen ohne eines.",
-  "start.devices": "Geräte…",
 };

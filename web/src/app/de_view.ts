@@ -170,4 +170,11 @@ export const deView: Record<keyof typeof enView, string> = {
   "guide.bring": "In die Nähe seines Platzes bringen, grün gezeigt.",
   "guide.push": "Hineinschieben, bis es sitzt.",
   "guide.done": "Erledigt:",
+  "devices.moreHands": "{n} Hände",
+  "devices.addHand": "Hand hinzufügen",
+  "start.recent": "Zuletzt geöffnet",
+  "start.searching": "Kraftrückmeldegeräte werden gesucht…",
+  "start.found": "Angeschlossen: {devices}. Die Maus geht ebenso.",
+  "start.none": "Kein Kraftrückmeldegerät gefunden. Maus, Finger, SpaceMouse und VR-Controller gehen ohne eines.",
+  "start.devices": "Geräte…",
 };

@@ -23,11 +23,4 @@ export const enPeople = {
   "note.pin": "Pin",
   "note.remove": "Remove",
   "note.of": "Note {n} on {part}, by {by}",
-  "devices.moreHands": "{n} hands",
-  "devices.addHand": "Add a hand",
-  "start.recent": "Opened recently",
-  "start.searching": "Looking for force-feedback devices…",
-  "start.found": "Connected: {devices}. The mouse works as well.",
-  "start.none": "No force-feedback device was found. Mouse, touch, SpaceMouse and VR controllers work without one.",
-  "start.devices": "Devices…",
 } as const;

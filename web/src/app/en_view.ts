@@ -168,4 +168,11 @@ export const enView = {
   "guide.bring": "Bring it near its place, shown in green.",
   "guide.push": "Push it in until it is seated.",
   "guide.done": "Done:",
+  "devices.moreHands": "{n} hands",
+  "devices.addHand": "Add a hand",
+  "start.recent": "Opened recently",
+  "start.searching": "Looking for force-feedback devices…",
+  "start.found": "Connected: {devices}. The mouse works as well.",
+  "start.none": "No force-feedback device was found. Mouse, touch, SpaceMouse and VR controllers work without one.",
+  "start.devices": "Devices…",
 } as const;

@@ -34,7 +34,9 @@ export function GroupLabels() {
   const isMany = (store.scene.value?.occurrences.length ?? 0) >= kManyParts;
   const isShown = isMany && store.study.value === null && view.explode.value === 0 && view.apart.value === null;
   useLive(() => {
-    groups.value = isShown ? groupLying(listLying()).slice(0, kMostLabels) : [];
+    if (isShown || groups.value.length > 0) {
+      groups.value = isShown ? groupLying(listLying()).slice(0, kMostLabels) : [];
+    }
   }, kGroupMs);
   useLive(() => {
     const port = viewport.value;
@@ -53,7 +55,7 @@ export function GroupLabels() {
     });
   }, 0);
   return groups.value.length === 0 ? null : (
-    <div class="people-marks" ref={host} aria-hidden="true" data-testid="group-labels">
+    <div class="view-marks" ref={host} aria-hidden="true" data-testid="group-labels">
       {groups.value.map(({ name, ids }) => (
         <span key={ids[0]} class="group-label">
           {name} <b>×{ids.length}</b>

@@ -19,6 +19,7 @@ import "./styles/panels.css";
 import "./styles/view.css";
 import "./styles/time.css";
 import "./styles/people.css";
+import "./styles/start.css";
 import "./styles/phone.css";
 
 const { token, rest } = takeToken(location.hash);

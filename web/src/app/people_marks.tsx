@@ -74,7 +74,7 @@ export function PeopleMarks() {
     return null;
   }
   return (
-    <div class="people-marks">
+    <div class="view-marks">
       {[...store.looking.value.keys()].map((id) => (
         <Cursor key={id} id={id} />
       ))}

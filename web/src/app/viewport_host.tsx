@@ -30,6 +30,9 @@ function coveredRim(): Rim {
   return rimOf(picture, panels.filter(({ width, height }) => width > 0 && height > 0));
 }
 
+/** What this page tells others of its view; null before there is one. */
+let sharedEyes: SharedEyes | null = null;
+
 function makeViewport(): Viewport {
   const made = new Viewport(element(), studio, view);
   made.rig.rim = coveredRim;
@@ -45,12 +48,13 @@ function makeViewport(): Viewport {
     ui.overlay.value = { kind: "menu", x, y, occurrence: hit?.occurrence ?? null };
   };
   made.showPaths(paths);
-  new SharedEyes(made, studio);
+  sharedEyes = new SharedEyes(made, studio);
   return made;
 }
 
 // While the page is worked on, the view of the module before does not go on beside the new one.
 import.meta.hot?.dispose(() => {
+  sharedEyes?.dispose();
   viewport.peek()?.dispose();
   viewport.value = null;
 });
