@@ -11,6 +11,7 @@
 #include "evidence/hdf5_writer.h"
 #include "evidence/output_file.h"
 #include "evidence/session_data.h"
+#include "haptics/constraint_solver.h"
 #include "haptics/tick_output.h"
 #include "session/recorded_model.h"
 #include "simulation/sequence.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "evidence/session_data.h"
+#include "haptics/constraint_solver.h"
 #include "haptics/haptic_tick.h"
 
 namespace hvas::evidence {

@@ -11,7 +11,9 @@
 
 #include "evidence/demonstrations.h"
 #include "evidence/mcap_writer.h"
+#include "evidence/session_data.h"
 #include "evidence/tables.h"
+#include "haptics/constraint_solver.h"
 
 namespace hvas::evidence {
 namespace {

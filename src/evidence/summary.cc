@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evidence/session_data.h"
+#include "haptics/constraint_solver.h"
 #include "session/json_values.h"
 #include "session/recorded_model.h"
 #include "session/session_recorder.h"

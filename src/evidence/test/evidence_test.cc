@@ -244,8 +244,9 @@ void RecordHands(const std::vector<std::uint8_t>& hands, const std::filesystem::
   constexpr int kTicksEach = 10;
   record::RecorderOptions options;
   options.path = path;
-  const auto recorder = record::Recorder::Create(
-      options, session::MakeModelMeta(*simulation::testing::PegInBlockModel()));
+  const auto& model = simulation::testing::PegInBlockModel();
+  const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
+  const session::SessionRecorder sink(recorder->get(), *model);
   std::int64_t t_ns = 0;
   for (const std::uint8_t holder : hands) {
     for (int i = 0; i < kTicksEach; ++i, t_ns += 1'000'000) {
