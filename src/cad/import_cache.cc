@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // To be raised whenever entries are named or written differently.
-constexpr std::int64_t kVersion = 4;
+constexpr std::int64_t kVersion = 5;
 constexpr const char* kExtension = ".hvasproduct";
 constexpr std::size_t kKeyLength = 32;  // Hex digits of 128 bits.
 

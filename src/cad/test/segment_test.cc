@@ -385,6 +385,31 @@ TEST(TrianglePart, TellsACrackFromAnOpening) {
   EXPECT_EQ(diagnostics.items().front().code, "no-solid");
 }
 
+// The faces of a file were divided each by itself: only what lies on their edges tells that they
+// hang together.
+TEST(TrianglePart, FacesWithUnequalEdgesHangTogether) {
+  const TriangleSoup box = testing::MakeBox({0.06, 0.04, 0.01});
+  TriangleSoup soup;
+  for (std::size_t i = 0; i < box.triangles.size(); ++i) {
+    // Every triangle has vertices of its own, and two of four are divided into 16.
+    TriangleSoup one;
+    for (const std::uint32_t v : box.triangles[i]) {
+      one.vertices.push_back(box.vertices[v]);
+    }
+    one.triangles = {{0, 1, 2}};
+    if (i / 2 % 2 == 1) {
+      one = testing::Subdivide(testing::Subdivide(one));
+    }
+    testing::Append(one, &soup);
+  }
+  const WeldedMesh mesh = WeldMesh(soup);
+  ASSERT_EQ(mesh.shells.size(), 1U);
+  EXPECT_TRUE(mesh.shells[0].is_closed);
+  EXPECT_EQ(mesh.defects.open_edges, 0U);
+  EXPECT_EQ(mesh.defects.shared_edges, 0U);
+  EXPECT_NEAR(mesh.shells[0].volume, 24e-6, 1e-17);
+}
+
 TEST(TrianglePart, MoreShellsThanAreLookedAtForCavitiesAreReported) {
   for (const int count : {500, 501}) {
     TriangleSoup soup;

@@ -66,10 +66,11 @@ struct WeldedMesh {
   MeshDefects defects;
 };
 
-/** Welds, drops what is no triangle, finds neighbours and shells, turns triangles to agree with
- their neighbours and closed shells outward; a closed shell inside another is its cavity when its
- triangles say so. A shell is closed where its rims enclose no area, so that cracks between unequal
- edges do no harm. Empty where no triangle is left. */
+/** Welds, drops what is no triangle, divides triangles where vertices of others lie on their open
+ edges (T-junctions), finds neighbours and shells, turns triangles to agree with their neighbours
+ and closed shells outward; a closed shell inside another is its cavity when its triangles say so. A
+ shell is closed where its rims enclose no area, so that cracks between unequal edges do no harm.
+ Empty where no triangle is left. */
 [[nodiscard]] WeldedMesh WeldMesh(const TriangleSoup& soup);
 
 }  // namespace hvas::cad
