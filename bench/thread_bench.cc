@@ -27,7 +27,8 @@ namespace {
 using hvas::Vec3;
 using hvas::spatial::Pose;
 
-constexpr double kTurns = 5;
+constexpr double kTurns = 5;     // After the play is taken up.
+constexpr double kStart = 6;     // Turns above where it is drawn, at the bolt's head.
 constexpr double kRate = 1;      // [turns/s]
 constexpr double kPush = 2e-3;   // How far the hand is ahead along the axis [m]: 2 N.
 constexpr double kRunIn = 0.25;  // [turns] until the play is taken up.
@@ -61,7 +62,7 @@ struct Leg {
 Leg Run(double sense, hvas::haptics::testing::HeldRig* rig, std::vector<double>* times_us) {
   using hvas::haptics::testing::kDt;
   const double rate = sense * kRate * hvas::units::kTurn;
-  const int ticks = static_cast<int>(std::lround(kTurns / kRate / kDt));
+  const int ticks = static_cast<int>(std::lround((kRunIn + kTurns) / kRate / kDt));
   const int run_in = static_cast<int>(std::lround(kRunIn / kRate / kDt));
   const Vec3 centre_B = rig->part.p_BoBcm_B;
   Leg leg;
@@ -95,8 +96,7 @@ void Measure(const std::filesystem::path& folder, const std::string& size, doubl
   const auto bolt = Load(folder / ("factory_bolt_" + size + ".obj"));
   const auto nut = Load(folder / ("factory_nut_" + size + "_subdiv_3x.obj"));
   rig.scene.Add(bolt, Pose());
-  // As drawn, and kTurns up.
-  rig.Place(nut, Pose(Vec3(0, 0, kTurns * pitch)));
+  rig.Place(nut, Pose(Vec3(0, 0, kStart * pitch)));
   rig.part.mass = 0.02;
   rig.part.I_BBcm_B = 1e-6 * hvas::Mat3::Identity();
   rig.part.X_WB_goal = Pose(Vec3(1, 1, 1));

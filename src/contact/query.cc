@@ -102,6 +102,19 @@ double AllowedDepth(const Allowance& allowance, const SampleFaces& sample, std::
   return is_own && (face == kNoFace || IsAllowed(other, face)) ? allowance.depth : 0;
 }
 
+// Shell::thread of the points on a thread.
+std::uint8_t NumberOf(const Shape::Data& shape, const Helix& thread) {
+  return static_cast<std::uint8_t>(&thread - shape.helices.data() + 1);
+}
+
+Refined RefineAtThread(const Helix& thread, const HelixPoint& at) {
+  const HelixDistance found = CalcHelixDistance(thread, at);
+  Refined refined;
+  refined.distance = found.distance;
+  refined.gradient = found.gradient;
+  return refined;
+}
+
 // What single precision says of a hit on one face, with both faces as made; to kScreened.
 double ScreenedDistance(const Placed& sampled, const Shell& shell, const Placed& field,
                         const Hit& hit, const Vec3& p_F, const Vec3& towards) {
@@ -148,8 +161,29 @@ void BodyQuery::Collect(BodyId id, const Placed& scene) noexcept {
   }
   NearBody& near = work_->bodies[work_->body_count++];
   near.body = id;
-  CollectLeaves(held_, held_.shape->shell, scene, &near.first[0], &near.count[0]);
-  CollectLeaves(scene, scene.shape->features, held_, &near.first[1], &near.count[1]);
+  near.threads = FindThreads(id, scene);
+  CollectLeaves(held_, held_.shape->shell, scene, near.threads.held, &near.first[0],
+                &near.count[0]);
+  CollectLeaves(scene, scene.shape->features, held_, near.threads.scene, &near.first[1],
+                &near.count[1]);
+}
+
+ThreadPair BodyQuery::FindThreads(BodyId id, const Placed& scene) const noexcept {
+  if (scene.shape->helices.empty() || held_.shape->helices.empty() ||
+      FindAllowance(id) != nullptr ||
+      std::any_of(options_.ignored.begin(), options_.ignored.end(),
+                  [id](const IgnoredPair& ignored) { return ignored.body == id; })) {
+    return {};
+  }
+  const RelativePose X_SH(scene, held_);
+  for (const Helix& ours : held_.shape->helices) {
+    for (const Helix& theirs : scene.shape->helices) {
+      if (IsThreadIn(theirs, ours, X_SH.R, X_SH.p)) {
+        return {&ours, &theirs};
+      }
+    }
+  }
+  return {};
 }
 
 double BodyQuery::Reach(const Placed& sampled, const Placed& field,
@@ -159,7 +193,8 @@ double BodyQuery::Reach(const Placed& sampled, const Placed& field,
 }
 
 void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                              std::uint32_t* first, std::uint32_t* count) noexcept {
+                              const Helix* thread, std::uint32_t* first,
+                              std::uint32_t* count) noexcept {
   const RelativePose X(field, sampled);
   LeafBuffer out;
   out.leaves = work_->leaves.data() + work_->leaf_count;
@@ -167,6 +202,14 @@ void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const P
   kernel_.collect(shell.view, field.shape->field.view, X.Single(),
                   static_cast<float>(Reach(sampled, field, X)), &out);
   work_->stats.is_truncated = work_->stats.is_truncated || out.is_truncated;
+  if (thread != nullptr) {
+    // What is on its thread is met by its edges, and by what the other has beside its own thread.
+    const std::uint8_t number = NumberOf(*sampled.shape, *thread);
+    const auto* kept = std::remove_if(out.leaves, out.leaves + out.count, [&](std::uint32_t leaf) {
+      return shell.leaf_thread[leaf] == number;
+    });
+    out.count = static_cast<std::uint32_t>(kept - out.leaves);
+  }
   *first = static_cast<std::uint32_t>(work_->leaf_count);
   *count = out.count;
   work_->leaf_count += out.count;
@@ -213,6 +256,10 @@ void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
   ++work_->stats.bodies_tested;
   const bool has_ignored = SetMasks(near.body, 0xff);
   allowance_ = FindAllowance(near.body);
+  if (near.threads.held != nullptr) {
+    ThreadEdges<false>(held_, *near.threads.held, scene, *near.threads.scene, near.body);
+    ThreadEdges<true>(scene, *near.threads.scene, held_, *near.threads.held, near.body);
+  }
   Samples<false>(held_, held_.shape->shell, scene, has_ignored, near);
   Samples<true>(scene, scene.shape->features, held_, has_ignored, near);
   work_->layer.Add(layer_, scene.R_WC, scene.p_WC);
@@ -262,6 +309,34 @@ bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
 }
 
 template <bool kIsReverse>
+void BodyQuery::ThreadEdges(const Placed& sampled, const Helix& own, const Placed& field,
+                            const Helix& other, BodyId body) noexcept {
+  if (is_stopped_) {
+    return;
+  }
+  const RelativePose X(field, sampled);
+  RawContact contact;
+  contact.body = body.value();
+  contact.is_reverse = kIsReverse;
+  contact.point = kFixedPoint;
+  contact.held_face = kNoFace;
+  contact.scene_face = kNoFace;
+  work_->stats.points_tested +=
+      ForEachEdgeContact(own, other, X.R, X.p, margin_, [&](const HelixContact& found) {
+        contact.p = found.p;
+        contact.gradient = found.gradient;
+        contact.distance = found.distance;
+        if constexpr (kIsReverse) {
+          work_->reducer.Add(contact, -(X.R.transpose() * found.gradient), found.p);
+        } else {
+          work_->reducer.Add(contact, found.gradient, X * found.p);
+        }
+        is_stopped_ = found.distance < stop_distance_;
+        return !is_stopped_;
+      });
+}
+
+template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
                         bool has_ignored, const NearBody& body) noexcept {
   const std::uint32_t leaf_count = body.count[kIsReverse ? 1 : 0];
@@ -296,6 +371,10 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   const auto allowed_depth = [this](const SampleFaces& sample, std::uint32_t face) {
     return allowance_ != nullptr ? AllowedDepth<kIsReverse>(*allowance_, sample, face) : 0;
   };
+  const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
+  const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
+  const std::uint8_t own_number =
+      own_thread != nullptr ? NumberOf(*sampled.shape, *own_thread) : std::uint8_t{0};
   const std::uint32_t step = Stride(hits.count);
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
@@ -310,7 +389,16 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       filter.bits = BitsOf(faces, own_mask);
     }
     std::uint32_t own_face = kNoFace;
-    if (IsScreened(sampled, field, hit, filter)) {
+    if (own_thread != nullptr && shell.thread[hit.point] == own_number) {
+      continue;  // Its edges answer.
+    }
+    HelixPoint at_thread;
+    bool is_at_thread = false;
+    if (other_thread != nullptr) {
+      at_thread = Locate(*other_thread, p_F);
+      is_at_thread = IsInThread(*other_thread, at_thread, margin_);
+    }
+    if (!is_at_thread && IsScreened(sampled, field, hit, filter)) {
       if (filter.Drops(hit.face)) {
         continue;
       }
@@ -335,7 +423,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
         continue;
       }
     }
-    const Refined r = RefineActual(*field.shape, field.offsets, p_F, hit, filter);
+    const Refined r = is_at_thread ? RefineAtThread(*other_thread, at_thread)
+                                   : RefineActual(*field.shape, field.offsets, p_F, hit, filter);
     contact.allowance = allowed_depth(faces, r.face);
     // So deep inside, the field knows no face: for a sample of faces that something else answers
     // for, what it answers for may be all around, as the thread of a screw around the rim of its
@@ -357,7 +446,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     contact.distance = r.distance + contact.allowance;
     contact.gradient = r.gradient;
     contact.is_exact = r.is_exact;
-    contact.point = hit.point;
+    contact.point = is_at_thread ? kFixedPoint : hit.point;
     contact.held_face = kIsReverse ? r.face : own_face;
     contact.scene_face = kIsReverse ? own_face : r.face;
     if constexpr (kIsReverse) {

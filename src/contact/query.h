@@ -19,11 +19,18 @@ inline constexpr std::size_t kMaxQueryFaces = 65536;
 inline constexpr std::size_t kMaxQueryLeaves = 65536;
 inline constexpr std::size_t kMaxQueryBodies = 512;
 
+/** Threads of the held part and of a body of the scene that are in one another; null: none are. */
+struct ThreadPair {
+  const Helix* held{nullptr};
+  const Helix* scene{nullptr};
+};
+
 /** A body near the held part, and the leaves of either shell that are near the other's surface. */
 struct NearBody {
   BodyId body;
   std::array<std::uint32_t, 2> first{};  ///< Into the leaves: of the held shell, of the body's.
   std::array<std::uint32_t, 2> count{};
+  ThreadPair threads;
 };
 
 struct QueryWorkspace::Data {
@@ -66,8 +73,7 @@ struct Placed {
 
   /** Sample i of one of the shape's shells, where it is on the part as made. */
   [[nodiscard]] Vec3 Sample(const Shell& shell, std::uint32_t i) const noexcept {
-    const Vec3 p(static_cast<double>(shell.x[i]), static_cast<double>(shell.y[i]),
-                 static_cast<double>(shell.z[i]));
+    const Vec3 p = shell.point(i);
     return offsets != nullptr ? Vec3(p + offsets->ShiftOf(shell, i)) : p;
   }
 };
@@ -113,8 +119,13 @@ class BodyQuery {
   bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
   /** Finds what is allowed with a body; null where nothing is. */
   [[nodiscard]] const Allowance* FindAllowance(BodyId id) const noexcept;
+  /** @param thread  The sampled one's that is in one of the other's; null: none. */
   void CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                     std::uint32_t* first, std::uint32_t* count) noexcept;
+                     const Helix* thread, std::uint32_t* first, std::uint32_t* count) noexcept;
+  [[nodiscard]] ThreadPair FindThreads(BodyId id, const Placed& scene) const noexcept;
+  template <bool kIsReverse>
+  void ThreadEdges(const Placed& sampled, const Helix& own, const Placed& field, const Helix& other,
+                   BodyId body) noexcept;
   /** The margin for the field of the part as drawn in single precision. */
   [[nodiscard]] double Reach(const Placed& sampled, const Placed& field,
                              const RelativePose& X_FS) const noexcept;

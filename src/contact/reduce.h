@@ -8,6 +8,9 @@
 
 namespace hvas::contact {
 
+/** RawContact::point of what is exact where it is found, and not moved from there. */
+inline constexpr std::uint32_t kFixedPoint = 0xffffffffU;
+
 /** A contact as it is found: a sample of one shape in the field of the other. Frames are centred.
  */
 struct RawContact {
@@ -15,7 +18,7 @@ struct RawContact {
   Vec3 p{Vec3::Zero()};         ///< The sample, in the frame of the shape it belongs to.
   Vec3 gradient{Vec3::Zero()};  ///< Unit, out of the other shape, in that shape's frame.
   std::uint32_t body{0};
-  std::uint32_t point{0};  ///< Index in the shell that it came from.
+  std::uint32_t point{0};  ///< Index in the shell that it came from, or kFixedPoint.
   std::uint32_t held_face{0};
   std::uint32_t scene_face{0};
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.

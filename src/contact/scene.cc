@@ -117,7 +117,7 @@ struct Scene::Data {
     const std::size_t lowest = std::min({work->reducer.group_count(), selected, kMostSlides});
     const std::span<RawContact> raw(work->raw.data(), selected);
     for (std::size_t i = 0; i < selected; ++i) {
-      if (i < lowest) {
+      if (i < lowest && raw[i].point != kFixedPoint) {
         MoveToLowest(held, &raw[i]);
       }
       work->deepest = std::min(work->deepest, raw[i].distance);

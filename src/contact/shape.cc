@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "contact/field_build.h"
+#include "contact/helix_fit.h"
 #include "contact/shape_data.h"
 #include "contact/shell_build.h"
 
@@ -67,7 +68,7 @@ std::size_t Bytes(const std::vector<T>& v) {
 
 std::size_t Bytes(const Shell& s) {
   return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
-         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order);
+         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order) + Bytes(s.thread) + Bytes(s.leaf_thread);
 }
 
 // How many blocks a part's box has at its voxel.
@@ -91,6 +92,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
     data->exact.faces.back().origin -= data->p_BC;
   }
   CheckFaces(data->mesh, &data->exact);
+  data->helices = FindHelices(data->mesh, data->exact.faces);
   data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
   constexpr double kMostBlocks = 1U << 27U;  // Half a gigabyte of directory.
   if (!(CountBlocks(*data) <= kMostBlocks)) {
@@ -159,7 +161,7 @@ ShapeMemory Shape::CalcMemory() const noexcept {
       Bytes(d.field.top) + Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse);
   memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
                   Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces) +
-                  Bytes(d.exact.forms);
+                  Bytes(d.exact.forms) + Bytes(d.helices);
   memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normals) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
                 Bytes(m.vertex_normals) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);

@@ -32,8 +32,7 @@ std::array<std::uint8_t, 8> OrderOf(const Shell& shell, std::size_t leaf) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = 8 * leaf + i;
-    p[i] = {static_cast<double>(shell.x[k]), static_cast<double>(shell.y[k]),
-            static_cast<double>(shell.z[k])};
+    p[i] = shell.point(k);
     mean += p[i] / static_cast<double>(count);
     const auto& faces = shell.faces[k].faces;
     rank[i] = static_cast<std::size_t>(
@@ -68,6 +67,30 @@ void OrderLeaves(Shell* shell) {
   shell->Bind();
 }
 
+/** On which thread a point lies: one more than its number, or 0. */
+std::uint8_t ThreadOf(const Vec3& p, const std::vector<Helix>& helices) {
+  for (std::size_t i = 0; i < helices.size(); ++i) {
+    if (IsInThread(helices[i], Locate(helices[i], p), helices[i].deviation)) {
+      return static_cast<std::uint8_t>(i + 1);
+    }
+  }
+  return 0;
+}
+
+void FindThreadPoints(const std::vector<Helix>& helices, Shell* shell) {
+  shell->thread.clear();
+  shell->leaf_thread.clear();
+  for (std::size_t leaf = 0; !helices.empty() && leaf < shell->leaf_count.size(); ++leaf) {
+    for (std::size_t k = 8 * leaf; k < 8 * leaf + 8; ++k) {
+      shell->thread.push_back(ThreadOf(shell->point(k), helices));
+    }
+    const auto first = shell->thread.end() - 8;
+    const bool is_one = std::all_of(first, first + shell->leaf_count[leaf],
+                                    [first](std::uint8_t thread) { return thread == *first; });
+    shell->leaf_thread.push_back(is_one ? *first : std::uint8_t{0});
+  }
+}
+
 template <typename... T>
 void Shrink(std::vector<T>&... vectors) {
   (vectors.shrink_to_fit(), ...);
@@ -76,7 +99,7 @@ void Shrink(std::vector<T>&... vectors) {
 // What was appended to one by one has room for more.
 void Shrink(Shell* shell) {
   Shrink(shell->nodes, shell->x, shell->y, shell->z, shell->leaf_count, shell->faces, shell->facing,
-         shell->order);
+         shell->order, shell->thread, shell->leaf_thread);
   shell->Bind();
 }
 
@@ -137,6 +160,11 @@ void Shape::Data::Complete() {
   for (const spatial::Surface& surface : exact.faces) {
     exact.forms.push_back(MakeFaceForm(surface));
   }
+  for (Helix& helix : helices) {
+    helix.Complete();
+  }
+  FindThreadPoints(helices, &shell);
+  FindThreadPoints(helices, &features);
   OrderLeaves(&shell);
   OrderLeaves(&features);
   Shrink(&mesh);

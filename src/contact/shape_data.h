@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/helix.h"
 #include "contact/kernel.h"
 #include "contact/list_faces.h"
 #include "contact/mesh.h"
@@ -95,6 +96,14 @@ struct Shell {
   std::vector<float> facing;  ///< Each point's least cosine of its normal against a contact's.
   std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
   std::size_t point_count{0};
+  // Of a shape with threads, Complete fills them: one more than the number of the thread on which a
+  // point lies, and on which all points of a leaf lie, or 0.
+  std::vector<std::uint8_t> thread;
+  std::vector<std::uint8_t> leaf_thread;
+
+  [[nodiscard]] Vec3 point(std::size_t i) const noexcept {
+    return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+  }
 
   void Bind() {
     view = {nodes.data(),
@@ -115,6 +124,7 @@ struct Shape::Data {
   Mesh mesh;
   Field field;
   ExactTable exact;
+  std::vector<Helix> helices;  ///< Threads that are modelled; mostly none.
   double spacing{0};
   Shell shell;  ///< All samples.
   Shell

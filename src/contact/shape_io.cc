@@ -88,6 +88,11 @@ class Members {
     VisitMesh(&d->mesh);
     VisitField(&d->field);
     VisitExact(&d->exact);
+    if (archive_.Size(&d->helices)) {
+      for (auto& helix : d->helices) {
+        VisitHelix(&helix);
+      }
+    }
     VisitShell(&d->shell);
     VisitShell(&d->features);
   }
@@ -173,6 +178,22 @@ class Members {
     One(&e->distance_bits);
     One(&e->distance_unit);
     All(&e->list_faces);
+  }
+
+  template <typename AnyHelix>
+  void VisitHelix(AnyHelix* h) {
+    Visit3(&h->origin);
+    Visit3(&h->axis);
+    Visit3(&h->u);
+    for (auto* value : {&h->pitch, &h->sense, &h->outward, &h->low, &h->high, &h->deviation}) {
+      One(value);
+    }
+    if (archive_.Size(&h->corners)) {
+      for (auto& corner : h->corners) {
+        One(&corner.z);
+        One(&corner.r);
+      }
+    }
   }
 
   template <typename AnyShell>
