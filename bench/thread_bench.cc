@@ -1,12 +1,11 @@
 /** A nut with modelled helices on its bolt in a scripted hand, by contact alone: five turns down
- and five up at one turn a second, pressed with 2 N. Advance of a turn, depth of contact and time of
- the tick, for each pair in a folder that has Factory's meshes (factory_nut_SIZE_subdiv_3x.obj and
- factory_bolt_SIZE.obj, in metres).
+ and five up at one turn a second, pressed with 2 N. Advance of a turn, depth of contact and
+ processor time of the tick, for each pair in a folder that has Factory's meshes
+ (factory_nut_SIZE_subdiv_3x.obj and factory_bolt_SIZE.obj, in metres).
 
      thread_bench FOLDER SIZE=PITCH_MM...      thread_bench factory m8_loose=1.25 m16_tight=2
  */
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/file_cache.h"
 #include "base/units.h"
 #include "cad/import.h"
@@ -71,10 +71,9 @@ Leg Run(double sense, hvas::haptics::testing::HeldRig* rig, std::vector<double>*
   hvas::Quat q_before = rig->hand->last().X_WD.q();
   for (int i = 0; i < ticks; ++i) {
     const double z = (rig->hand->last().X_WD * centre_B).z() + sense * kPush;
-    const auto begin = std::chrono::steady_clock::now();
+    const std::int64_t begin_ns = hvas::ThreadCpuNs();
     rig->hand->LeadTo(Vec3(0, 0, z), Vec3(0, 0, rate));
-    const auto took = std::chrono::steady_clock::now() - begin;
-    times_us->push_back(1e6 * std::chrono::duration<double>(took).count());
+    times_us->push_back(1e-3 * static_cast<double>(hvas::ThreadCpuNs() - begin_ns));
     const hvas::Quat q = rig->hand->last().X_WD.q();
     if (i >= run_in) {
       angle += hvas::spatial::RotationBetween(q_before, q).z();

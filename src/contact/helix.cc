@@ -44,8 +44,11 @@ double CalcTurn(double y, double x) noexcept {
 
 void Helix::Complete() {
   (void)HelixAzimuths();  // Made before a query asks for them.
+  SetAxis(axis, u);
   const std::size_t count = corners.size();
   sides.clear();
+  inverse_pitch = 1 / pitch;
+  least_cosine = 1;
   for (std::size_t i = 0; i < count + 2 * kSidesBefore; ++i) {
     // The corner that is kSidesBefore before the i-th one, of as many turns as it takes.
     const auto corner_at = [&](std::size_t k) {
@@ -56,11 +59,17 @@ void Helix::Complete() {
     };
     const auto [z, r] = corner_at(i);
     const auto [z_end, r_end] = corner_at(i + 1);
-    HelixSide side{z, r, z_end - z, r_end - r, 0, 0, 0};
+    HelixSide side;
+    side.z = z;
+    side.r = r;
+    side.dz = z_end - z;
+    side.dr = r_end - r;
+    side.slope = side.dr / side.dz;
     side.inverse = 1 / (side.dz * side.dz + side.dr * side.dr);
     side.n_z = -outward * side.dr * std::sqrt(side.inverse);
     side.n_r = outward * side.dz * std::sqrt(side.inverse);
     sides.push_back(side);
+    least_cosine = std::min(least_cosine, std::abs(side.n_r));
   }
   least_radius = std::numeric_limits<double>::infinity();
   largest_radius = 0;
@@ -74,6 +83,8 @@ void Helix::Complete() {
     // Where the material is within, it is convex where the profile turns towards the axis.
     corner.is_convex = outward * (before.dz * behind.dr - before.dr * behind.dz) < 0;
   }
+  const double rise = pitch / (units::kTurn * least_radius);
+  least_cosine /= std::sqrt(1 + rise * rise);
   side_at.assign(kBins, 0);
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const double z = static_cast<double>(bin) / kBins * pitch;
@@ -97,31 +108,20 @@ const std::array<std::array<double, 2>, kHelixAzimuths>& HelixAzimuths() noexcep
   return azimuths;
 }
 
-HelixPoint Locate(const Helix& helix, const Vec3& p) noexcept {
-  HelixPoint at;
-  const Vec3 d = p - helix.origin;
-  at.height = d.dot(helix.axis);
-  const Vec3 across = d - at.height * helix.axis;
-  at.radius = across.norm();
-  at.radial = at.radius > 0 ? Vec3(across / at.radius) : helix.u;
-  return at;
-}
-
-bool IsInThread(const Helix& helix, const HelixPoint& at, double margin) noexcept {
-  return at.height >= helix.low && at.height <= helix.high &&
-         at.radius >= helix.least_radius - margin && at.radius <= helix.largest_radius + margin;
-}
-
-HelixDistance CalcHelixDistance(const Helix& helix, const HelixPoint& at) noexcept {
-  const Vec3 around = helix.axis.cross(at.radial);
-  const double turn = CalcTurn(-around.dot(helix.u), at.radial.dot(helix.u));
-  double z = at.height - helix.sense * helix.pitch * turn;
-  z -= helix.pitch * std::floor(z / helix.pitch);
-  z = z < helix.pitch ? z : 0;
+HelixDistance CalcHelixDistance(const Helix& helix, const HelixPoint& at, double limit) noexcept {
+  double z = at.height - helix.sense * helix.pitch * CalcTurn(at.sine, at.cosine);
+  z -= helix.pitch * std::floor(z * helix.inverse_pitch);
+  z = z >= 0 && z < helix.pitch ? z : 0;
   const HelixSide* side =
-      &helix.sides[helix.side_at[static_cast<std::size_t>(z / helix.pitch * kBins)]];
+      &helix.sides[helix.side_at[static_cast<std::size_t>(z * helix.inverse_pitch * kBins)]];
   while (side[1].z <= z) {
     ++side;
+  }
+  const double profile = side->r + (z - side->z) * side->slope;
+  const double gap = helix.outward * (at.radius - profile);
+  // The sides lean no more than that; where the gap is negative, the distance is no less than it.
+  if ((gap > 0 ? gap * helix.least_cosine : gap) >= limit) {
+    return {std::numeric_limits<double>::infinity(), helix.u};
   }
   // The nearest of three sides: in a plane through the axis, along it and away from it.
   double least = std::numeric_limits<double>::infinity();
@@ -150,31 +150,31 @@ HelixDistance CalcHelixDistance(const Helix& helix, const HelixPoint& at) noexce
       n_r = scale * off_r;
     }
   }
-  const double profile = side->r + (z - side->z) / side->dz * side->dr;
-  const double sign = helix.outward * (at.radius - profile) >= 0 ? 1 : -1;
+  const double sign = gap >= 0 ? 1 : -1;
   const double rise = helix.sense * helix.pitch / units::kTurn;
   const double slope = n_z * rise / std::max(at.radius, helix.least_radius);
   const double stretch = 1 / std::sqrt(1 + slope * slope);
   return {sign * std::sqrt(least) * stretch,
-          stretch * (n_r * at.radial - slope * around + n_z * helix.axis)};
+          FromCylinder(helix, at, stretch * n_r, -stretch * slope, stretch * n_z)};
 }
 
-bool IsThreadIn(const Helix& helix, const Helix& other, const Mat3& R, const Vec3& p) noexcept {
+double CalcThreadOverlap(const Helix& helix, const Helix& other, const Mat3& R,
+                         const Vec3& p) noexcept {
   constexpr double kSamePitch = 0.02;  // Of it: what fits of meshes may be wrong by. A choice.
   constexpr double kSteepest = 0.2;    // [rad] a pitch's rise leans by less. A choice.
   if (helix.outward == other.outward || helix.sense != other.sense ||
       std::abs(helix.pitch - other.pitch) > kSamePitch * helix.pitch) {
-    return false;
+    return 0;
   }
   const Helix& inner = helix.outward > 0 ? other : helix;
   const Helix& outer = helix.outward > 0 ? helix : other;
   if (outer.least_radius > inner.largest_radius || outer.largest_radius < inner.least_radius) {
-    return false;
+    return 0;
   }
   const Vec3 axis = R * other.axis;
   const double cosine = axis.dot(helix.axis);
   if (std::abs(cosine) < std::cos(kSteepest)) {
-    return false;
+    return 0;
   }
   // Where the two axes are nearest to the middle of what they have in common.
   const Vec3 d = R * other.origin + p - helix.origin;
@@ -184,11 +184,11 @@ bool IsThreadIn(const Helix& helix, const Helix& other, const Mat3& R, const Vec
   const double low = std::max(helix.low, std::min(end_a, end_b));
   const double high = std::min(helix.high, std::max(end_a, end_b));
   if (low >= high) {
-    return false;
+    return 0;
   }
   const Vec3 at = d + (0.5 * (low + high) - start) / cosine * axis;
   const Vec3 off = at - at.dot(helix.axis) * helix.axis;
-  return off.norm() < inner.largest_radius - inner.least_radius;
+  return off.norm() < inner.largest_radius - inner.least_radius ? high - low : 0;
 }
 
 }  // namespace hvas::contact

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "base/units.h"
 #include "spatial/box.h"
 
@@ -24,18 +26,49 @@ struct Axis {
   double area{0};
 };
 
-/** A triangle of the mesh about an axis. */
-struct Facet {
-  std::uint32_t triangle{0};
-  double radius{0};  // Of its middle.
+/** A vertex of a mesh with the mean of normals around it. What each of these triangles is wrong by,
+ as it is flat, cancels out. */
+struct SurfacePoint {
+  Vec3 p{Vec3::Zero()};
+  Vec3 n{Vec3::Zero()};  // Not unit: as long as the area around it.
   double area{0};
-  double pitch{0};  // With the sign of the sense; 0 where it has none.
+  bool is_freeform{false};
 };
 
 double CalcArea(const Mesh& mesh, std::uint32_t t) {
   const auto& v = mesh.triangles[t];
   const Vec3& a = mesh.vertices[v[0]];
   return 0.5 * (mesh.vertices[v[1]] - a).cross(mesh.vertices[v[2]] - a).norm();
+}
+
+/** The points of a mesh: one for each vertex and each direction in which triangles around it look,
+ as there are several at an edge. */
+std::vector<SurfacePoint> ListPoints(const Mesh& mesh, const std::vector<spatial::Surface>& faces) {
+  constexpr double kAlike = 0.9;  // Cosine: 26 degrees. A choice.
+  std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      around[v].push_back(t);
+    }
+  }
+  std::vector<SurfacePoint> points;
+  for (std::size_t v = 0; v < around.size(); ++v) {
+    const std::size_t first = points.size();
+    for (const std::uint32_t t : around[v]) {
+      const Vec3 n = mesh.NormalOf(t);
+      const double area = CalcArea(mesh, t) / 3;
+      const auto alike = std::find_if(
+          points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
+          [&n](const SurfacePoint& point) { return point.n.dot(n) > kAlike * point.n.norm(); });
+      SurfacePoint& point = alike != points.end() ? *alike : points.emplace_back();
+      point.p = mesh.vertices[v];
+      point.n += area * n;
+      point.area += area;
+      point.is_freeform =
+          point.is_freeform || faces[mesh.face[t]].kind == spatial::SurfaceKind::kFreeform;
+    }
+  }
+  return points;
 }
 
 /** The axes of the faces of revolution, each once, those with the most area first. */
@@ -70,47 +103,83 @@ std::vector<Axis> ListAxes(const Mesh& mesh, const std::vector<spatial::Surface>
   return axes;
 }
 
-std::vector<Facet> ListFacets(const Mesh& mesh, const Axis& axis) {
+/** The axis of the screw motion that moves most of the freeform faces along themselves: with its
+ velocity c + w x p, (p x n) . w + n . c is zero there (Pottmann and Wallner, Computational Line
+ Geometry, 2001, ch. 4). What does not obey counts for less and less. None where there are hardly
+ any freeform faces. */
+std::optional<Axis> FindScrewAxis(const std::vector<SurfacePoint>& points,
+                                  const spatial::Box& box) {
+  constexpr std::size_t kLeast = 200;  // Points: fewer are no thread.
+  constexpr double kMost = 4000;       // Points that are looked at.
+  constexpr int kSteps = 40;           // Of them, half with the wider of the two scales.
+  constexpr double kWide = 0.02;       // Residuals that count for a quarter.
+  constexpr double kNarrow = 0.002;    // All are choices.
+  std::vector<const SurfacePoint*> freeform;
+  for (const SurfacePoint& point : points) {
+    if (point.is_freeform) {
+      freeform.push_back(&point);
+    }
+  }
+  if (freeform.size() < kLeast) {
+    return std::nullopt;
+  }
+  const double size = box.size().norm();
+  std::vector<std::pair<Vec6, double>> rows;  // With the area.
+  const double step = std::max(1.0, static_cast<double>(freeform.size()) / kMost);
+  for (double at = 0; at < static_cast<double>(freeform.size()); at += step) {
+    const SurfacePoint& point = *freeform[static_cast<std::size_t>(at)];
+    const Vec3 p = (point.p - box.centre()) / size;
+    Vec6 row;
+    row << p.cross(point.n) / point.area, point.n / point.area;
+    rows.emplace_back(row, point.area);
+  }
+  Vec6 screw = Vec6::Zero();
+  for (int i = 0; i < kSteps; ++i) {
+    const double scale = i < kSteps / 2 ? kWide : kNarrow;
+    const double turning = screw.head<3>().norm();
+    Mat6 matrix = Mat6::Zero();
+    for (const auto& [row, area] : rows) {
+      const double residual = turning > 0 ? row.dot(screw) / (turning * scale) : 0;
+      const double weight = area / ((1 + residual * residual) * (1 + residual * residual));
+      matrix += weight * row * row.transpose();
+    }
+    screw = Eigen::SelfAdjointEigenSolver<Mat6>(matrix).eigenvectors().col(0);
+  }
+  const Vec3 turning = screw.head<3>();
+  if (!(turning.norm() > 1e-6)) {
+    return std::nullopt;
+  }
+  const Vec3 origin = box.centre() + turning.cross(screw.tail<3>()) / turning.squaredNorm() * size;
+  return Axis{origin, turning.normalized(), 0};
+}
+
+/** The pitch that a thread about an axis has if the point is on one, with the sign of its sense; 0
+ where the point tells none. */
+double CalcPitch(const SurfacePoint& point, const Axis& axis) {
   constexpr double kFlat = 0.1;    // Cosine: less along the axis tells no pitch.
   constexpr double kLevel = 2e-3;  // Tangent of the rise: less is a surface of revolution.
   // Both are choices: threads rise by a hundredth at least, and their flanks lean.
-  std::vector<Facet> facets;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& v = mesh.triangles[t];
-    const Vec3 d =
-        (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3 - axis.origin;
-    Facet facet;
-    facet.triangle = t;
-    const Vec3 across = d - d.dot(axis.direction) * axis.direction;
-    facet.radius = across.norm();
-    if (facet.radius <= 0) {
-      continue;
-    }
-    facet.area = CalcArea(mesh, t);
-    const Vec3 n = mesh.NormalOf(t);
-    const double along = n.dot(axis.direction);
-    const double around = n.dot(axis.direction.cross(across)) / facet.radius;
-    if (std::abs(along) > kFlat && std::abs(around) > kLevel * std::abs(along) &&
-        std::abs(around) < std::abs(along)) {
-      facet.pitch = -units::kTurn * facet.radius * around / along;
-    }
-    facets.push_back(facet);
-  }
-  return facets;
+  const Vec3 around = axis.direction.cross(point.p - axis.origin);  // As long as the radius.
+  const double along = point.n.dot(axis.direction);
+  const double turned = point.n.dot(around);
+  const double radius = around.norm();
+  const bool tells = std::abs(along) > kFlat * point.area &&
+                     std::abs(turned) > kLevel * radius * std::abs(along) &&
+                     std::abs(turned) < radius * std::abs(along);
+  return tells ? -units::kTurn * turned / along : 0;
 }
 
-/** The pitch around which the most area is, and that area. The two triangles of a facet with four
- corners lean to either side of it. */
-std::pair<double, double> FindPitch(const std::vector<Facet>& facets) {
-  constexpr double kWidest = 1.5;  // Largest pitch over the least one. A choice.
-  std::vector<std::pair<double, const Facet*>> pitches;
-  for (const Facet& facet : facets) {
-    if (facet.pitch != 0) {
-      pitches.emplace_back(facet.pitch, &facet);
+/** The pitch around which the most area is, and that area. */
+std::pair<double, double> FindPitch(const std::vector<SurfacePoint>& points, const Axis& axis) {
+  constexpr double kWidest = 1.3;                  // Largest pitch over the least one. A choice.
+  std::vector<std::pair<double, double>> pitches;  // With their area.
+  for (const SurfacePoint& point : points) {
+    const double pitch = CalcPitch(point, axis);
+    if (pitch != 0) {
+      pitches.emplace_back(pitch, point.area);
     }
   }
-  std::stable_sort(pitches.begin(), pitches.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(pitches.begin(), pitches.end());
   // Sums of a window's area, and of its area times the pitch.
   double area = 0;
   double moment = 0;
@@ -120,11 +189,11 @@ std::pair<double, double> FindPitch(const std::vector<Facet>& facets) {
            std::max(std::abs(a), std::abs(b)) <= kWidest * std::min(std::abs(a), std::abs(b));
   };
   for (std::size_t begin = 0, end = 0; end < pitches.size(); ++end) {
-    area += pitches[end].second->area;
-    moment += pitches[end].second->area * pitches[end].first;
+    area += pitches[end].second;
+    moment += pitches[end].second * pitches[end].first;
     for (; !is_together(pitches[begin].first, pitches[end].first); ++begin) {
-      area -= pitches[begin].second->area;
-      moment -= pitches[begin].second->area * pitches[begin].first;
+      area -= pitches[begin].second;
+      moment -= pitches[begin].second * pitches[begin].first;
     }
     if (area > best.second) {
       best = {moment / area, area};
@@ -142,8 +211,7 @@ struct Place {
 
 Place PlaceOf(const Helix& helix, const Vec3& p) {
   const HelixPoint at = Locate(helix, p);
-  const double azimuth =
-      std::atan2(at.radial.dot(helix.axis.cross(helix.u)), at.radial.dot(helix.u));
+  const double azimuth = std::atan2(at.sine, at.cosine);
   return {at.height - helix.sense * helix.pitch * azimuth / units::kTurn, at.radius, at.height};
 }
 
@@ -194,7 +262,7 @@ double CalcSpread(const Helix& helix, const std::vector<Vec3>& points) {
 void MoveTo(const std::vector<Vec3>& points, double noise, Helix* helix) {
   constexpr int kSteps = 12;  // The last ones move nothing. A choice.
   for (int step = 0; step < kSteps; ++step) {
-    const std::array<Vec3, 3> ways = {helix->u, helix->axis.cross(helix->u), helix->axis};
+    const std::array<Vec3, 3> ways = {helix->u, helix->v, helix->axis};
     Mat6 matrix = Mat6::Zero();
     Vec6 rhs = Vec6::Zero();
     for (const Vec3& p : points) {
@@ -215,8 +283,7 @@ void MoveTo(const std::vector<Vec3>& points, double noise, Helix* helix) {
       return;
     }
     const Vec3 lean = x[0] * ways[0] + x[1] * ways[1];
-    helix->axis = (helix->axis + lean.cross(helix->axis)).normalized();
-    helix->u = (helix->u - helix->u.dot(helix->axis) * helix->axis).normalized();
+    helix->SetAxis((helix->axis + lean.cross(helix->axis)).normalized(), helix->u);
     helix->origin += x[2] * ways[0] + x[3] * ways[1] + x[4] * ways[2];
     helix->pitch *= 1 + x[5];
   }
@@ -224,7 +291,7 @@ void MoveTo(const std::vector<Vec3>& points, double noise, Helix* helix) {
 
 /** Finds the pitch within some per cent of what the normals say: the one with the least spread. */
 void SearchPitch(const std::vector<Vec3>& points, Helix* helix) {
-  constexpr double kWidest = 0.05;  // Of the pitch: what facets' normals may be wrong by.
+  constexpr double kWidest = 0.05;  // Of the pitch: what normals may be wrong by.
   constexpr double kStep = 5e-4;    // 20 turns then differ by a hundredth. Both are choices.
   const double start = helix->pitch;
   double best = std::numeric_limits<double>::infinity();
@@ -274,6 +341,9 @@ class ProfileDrawing {
     std::vector<std::size_t> kept;
     Divide(from, to, tolerance, &kept);
     Divide(to, from + kSteps, tolerance, &kept);
+    for (const std::size_t forced : {from, to}) {
+      DropStraight(forced, tolerance, &kept);
+    }
     return Sharpen(kept);
   }
 
@@ -311,6 +381,23 @@ class ProfileDrawing {
     }
     Divide(from, at, tolerance, kept);
     Divide(at, to, tolerance, kept);
+  }
+
+  /** Takes the corner out that was where the division began, if it is none. */
+  void DropStraight(std::size_t step, double tolerance, std::vector<std::size_t>* kept) const {
+    const auto at = std::find(kept->begin(), kept->end(), step);
+    if (kept->size() < 3 || at == kept->end()) {
+      return;
+    }
+    const std::size_t before = at == kept->begin() ? kept->back() - kSteps : *(at - 1);
+    const std::size_t behind = at + 1 == kept->end() ? kept->front() + kSteps : *(at + 1);
+    // Unsigned numbers wrap alike: counted from a pitch up, none is below zero.
+    const Vec2 a = At(before + kSteps);
+    const Vec2 way = (At(behind + kSteps) - a).normalized();
+    const Vec2 d = At(step + kSteps) - a;
+    if (std::abs(way.x() * d.y() - way.y() * d.x()) < tolerance) {
+      kept->erase(at);
+    }
   }
 
   /** Corners where the sides' best lines meet, rather than at one of the equal steps. */
@@ -372,11 +459,11 @@ class ProfileDrawing {
 /** The thread of one pitch about one axis. */
 class HelixFit {
  public:
-  HelixFit(const Mesh& mesh, const std::vector<Facet>& facets, const Axis& axis, double pitch)
-      : mesh_(mesh), facets_(facets) {
+  HelixFit(const Mesh& mesh, const std::vector<SurfacePoint>& points, const Axis& axis,
+           double pitch)
+      : mesh_(mesh), points_(points), axis_(axis) {
     helix_.origin = axis.origin;
-    helix_.axis = axis.direction;
-    helix_.u = spatial::FrameFromZ(axis.direction) * Vec3::UnitX();
+    helix_.SetAxis(axis.direction, spatial::FrameFromZ(axis.direction) * Vec3::UnitX());
     helix_.pitch = std::abs(pitch);
     helix_.sense = pitch > 0 ? 1 : -1;
   }
@@ -385,7 +472,7 @@ class HelixFit {
     if (!MeasureFlanks()) {
       return std::nullopt;
     }
-    const std::vector<Vec3> points = ListPoints();
+    const std::vector<Vec3> points = ListPointsOfThread();
     SearchPitch(Thinned(points, kFewPoints), &helix_);
     const auto spread = CalcSpread(helix_, points) / static_cast<double>(points.size());
     if (spread > kNearly * kNearly * depth_ * depth_) {
@@ -399,40 +486,38 @@ class HelixFit {
       if (!DrawMiddle()) {
         return std::nullopt;
       }
-      Grow(lowest, highest, kAsInMiddle * helix_.deviation);
+      Grow(lowest, highest, CalcTolerance());
       // Vertices alone are on the thread; what is between them is on chords.
       MoveTo(Thinned(ListVertices(), kMostPoints), kNoise * depth_, &helix_);
     }
     if (!DrawMiddle()) {
       return std::nullopt;
     }
-    Grow(lowest, highest, kAsInMiddle * helix_.deviation);
+    Grow(lowest, highest, CalcTolerance());
     const bool is_long = helix_.high - helix_.low > helix_.pitch;
-    const bool conforms = is_long && Draw() && helix_.deviation < kConforms * depth_;
+    const bool conforms = is_long && Draw() && off_ < kConforms * depth_;
     return conforms ? std::optional(helix_) : std::nullopt;
   }
 
  private:
   /** Span, radii and side of the triangles that have the pitch. False where they are no thread. */
   bool MeasureFlanks() {
-    constexpr double kSame = 0.25;     // Of the pitch: what a facet may be wrong by.
+    constexpr double kSame = 0.25;     // Of the pitch: what normals may be wrong by.
     constexpr double kTrimmed = 0.01;  // Of the area at either end. Both are choices.
     std::vector<std::pair<double, double>> heights;
     std::vector<std::pair<double, double>> radii;
     double outward = 0;
     double area = 0;
-    for (const Facet& facet : facets_) {
-      if (std::abs(helix_.sense * facet.pitch - helix_.pitch) > kSame * helix_.pitch) {
+    for (const SurfacePoint& point : points_) {
+      const double pitch = helix_.sense * CalcPitch(point, axis_);
+      if (std::abs(pitch - helix_.pitch) > kSame * helix_.pitch) {
         continue;
       }
-      area += facet.area;
-      const auto& v = mesh_.triangles[facet.triangle];
-      for (const std::uint32_t i : v) {
-        const HelixPoint at = Locate(helix_, mesh_.vertices[i]);
-        heights.emplace_back(at.height, facet.area);
-        radii.emplace_back(at.radius, facet.area);
-        outward += facet.area * mesh_.NormalOf(facet.triangle).dot(at.radial);
-      }
+      area += point.area;
+      const HelixPoint at = Locate(helix_, point.p);
+      heights.emplace_back(at.height, point.area);
+      radii.emplace_back(at.radius, point.area);
+      outward += point.n.dot(FromCylinder(helix_, at, 1, 0, 0));
     }
     const auto span = [area](std::vector<std::pair<double, double>>* values) {
       std::sort(values->begin(), values->end());
@@ -440,7 +525,7 @@ class HelixFit {
       std::pair<double, double> ends{0, 0};
       bool is_begun = false;
       for (const auto& [value, weight] : *values) {
-        sum += weight / 3;
+        sum += weight;
         if (!is_begun && sum >= kTrimmed * area) {
           ends.first = value;
           is_begun = true;
@@ -469,6 +554,11 @@ class HelixFit {
            area > kShare * flanks;
   }
 
+  /** How far the part may be from the helix to either side of the middle [m]. */
+  [[nodiscard]] double CalcTolerance() const {
+    return std::max(kAsInMiddle * helix_.deviation, kLeastTolerance * depth_);
+  }
+
   [[nodiscard]] bool IsBetweenRadii(double r) const {
     const double margin = 0.05 * depth_;
     return r > least_ - margin && r < largest_ + margin;
@@ -476,15 +566,14 @@ class HelixFit {
 
   /** Points all over the thread, thinned out to a number that is searched quickly. Vertices alone
    are in few rows, which do not tell a pitch from another one. */
-  [[nodiscard]] std::vector<Vec3> ListPoints() const {
+  [[nodiscard]] std::vector<Vec3> ListPointsOfThread() const {
     std::vector<Vec3> all;
     const double margin = std::min(0.2 * (helix_.high - helix_.low), helix_.pitch);
-    for (const Facet& facet : facets_) {
-      const auto& v = mesh_.triangles[facet.triangle];
+    for (const auto& v : mesh_.triangles) {
       const Vec3 middle = (mesh_.vertices[v[0]] + mesh_.vertices[v[1]] + mesh_.vertices[v[2]]) / 3;
-      const double height = Locate(helix_, middle).height;
-      if (height < helix_.low + margin || height > helix_.high - margin ||
-          !IsBetweenRadii(facet.radius)) {
+      const HelixPoint at = Locate(helix_, middle);
+      if (at.height < helix_.low + margin || at.height > helix_.high - margin ||
+          !IsBetweenRadii(at.radius)) {
         continue;
       }
       all.push_back(middle);
@@ -500,8 +589,7 @@ class HelixFit {
   [[nodiscard]] std::vector<Vec3> ListVertices() const {
     constexpr double kStraight = 2e-3;  // Of the way between the two: it bends less. A choice.
     std::vector<std::vector<std::uint32_t>> beside(mesh_.vertices.size());
-    for (const Facet& facet : facets_) {
-      const auto& v = mesh_.triangles[facet.triangle];
+    for (const auto& v : mesh_.triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         beside[v[k]].push_back(v[(k + 1) % 3]);  // Each edge comes from both of its sides.
       }
@@ -541,11 +629,11 @@ class HelixFit {
   /** Visits the three places of each triangle in the present span. */
   template <typename Visit>
   void ForEachTriangle(double low, double high, const Visit& visit) const {
-    for (const Facet& facet : facets_) {
+    for (const auto& v : mesh_.triangles) {
       std::array<Place, 3> places;
       bool is_in = true;
       for (std::size_t k = 0; k < 3; ++k) {
-        places[k] = PlaceOf(helix_, mesh_.vertices[mesh_.triangles[facet.triangle][k]]);
+        places[k] = PlaceOf(helix_, mesh_.vertices[v[k]]);
         is_in = is_in && places[k].height >= low && places[k].height <= high &&
                 IsBetweenRadii(places[k].r);
       }
@@ -557,7 +645,7 @@ class HelixFit {
         const double off = (places[k].z - places[0].z) - (places[k].height - places[0].height);
         places[k].z -= helix_.pitch * std::round(off / helix_.pitch);
       }
-      visit(places);
+      visit(places, v);
     }
   }
 
@@ -578,11 +666,12 @@ class HelixFit {
   /** Makes the corners of what is in the present span. False where that is no thread. */
   bool Draw() {
     ProfileDrawing drawing(helix_.pitch);
-    ForEachTriangle(helix_.low, helix_.high, [&](const std::array<Place, 3>& places) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        drawing.AddEdge(places[k], places[(k + 1) % 3]);
-      }
-    });
+    ForEachTriangle(helix_.low, helix_.high,
+                    [&](const std::array<Place, 3>& places, const Corners&) {
+                      for (std::size_t k = 0; k < 3; ++k) {
+                        drawing.AddEdge(places[k], places[(k + 1) % 3]);
+                      }
+                    });
     if (!drawing.is_whole()) {
       return false;
     }
@@ -592,21 +681,24 @@ class HelixFit {
       return false;
     }
     helix_.Complete();
+    off_ = 0;
     helix_.deviation = 0;
-    ForEachTriangle(helix_.low, helix_.high, [&](const std::array<Place, 3>& places) {
-      for (const Place& place : places) {
-        helix_.deviation = std::max(helix_.deviation, CalcDeviation(place));
-      }
-    });
-    return helix_.deviation < kBefore * depth_;
+    ForEachTriangle(
+        helix_.low, helix_.high, [&](const std::array<Place, 3>& places, const Corners& v) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            off_ = std::max(off_, CalcDeviation(places[k]));
+            const Vec3 middle = 0.5 * (mesh_.vertices[v[k]] + mesh_.vertices[v[(k + 1) % 3]]);
+            helix_.deviation = std::max(helix_.deviation, CalcDeviation(PlaceOf(helix_, middle)));
+          }
+        });
+    helix_.deviation = std::max(helix_.deviation, off_);
+    return off_ < kBefore * depth_;
   }
 
   [[nodiscard]] double CalcDeviation(const Place& place) const {
     const double azimuth = (place.height - place.z) * helix_.sense / helix_.pitch * units::kTurn;
-    const Vec3 radial =
-        std::cos(azimuth) * helix_.u + std::sin(azimuth) * helix_.axis.cross(helix_.u);
-    const Vec3 p = helix_.origin + place.height * helix_.axis + place.r * radial;
-    return std::abs(CalcHelixDistance(helix_, p).distance);
+    const HelixPoint at{place.height, place.r, std::cos(azimuth), std::sin(azimuth)};
+    return std::abs(CalcHelixDistance(helix_, at).distance);
   }
 
   /** Widens the span to either side as long as all of the part there is on the surface.
@@ -615,17 +707,25 @@ class HelixFit {
     constexpr double kSlices = 16;  // Of a pitch. A choice.
     const double step = helix_.pitch / kSlices;
     const auto count = static_cast<std::size_t>(std::ceil((highest - lowest) / step));
-    std::vector<double> worst(count, -1.0);
+
+    struct Slice {
+      double worst{-1};  // Negative: nothing of the part is there.
+      double low{std::numeric_limits<double>::infinity()};
+      double high{-std::numeric_limits<double>::infinity()};
+    };
+
+    std::vector<Slice> slices(count);
     const auto add = [&](const Vec3& p) {
       const Place place = PlaceOf(helix_, p);
       const double slice = (place.height - lowest) / step;
       if (slice >= 0 && slice < static_cast<double>(count) && IsBetweenRadii(place.r)) {
-        double& most = worst[static_cast<std::size_t>(slice)];
-        most = std::max(most, CalcDeviation(place));
+        Slice& at = slices[static_cast<std::size_t>(slice)];
+        at.worst = std::max(at.worst, CalcDeviation(place));
+        at.low = std::min(at.low, place.height);
+        at.high = std::max(at.high, place.height);
       }
     };
-    for (const Facet& facet : facets_) {
-      const auto& v = mesh_.triangles[facet.triangle];
+    for (const auto& v : mesh_.triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& p = mesh_.vertices[v[k]];
         add(p);
@@ -633,8 +733,9 @@ class HelixFit {
       }
     }
     const auto is_on_it = [&](long i) {
-      return i >= 0 && i < static_cast<long>(count) && worst[static_cast<std::size_t>(i)] >= 0 &&
-             worst[static_cast<std::size_t>(i)] < tolerance;
+      return i >= 0 && i < static_cast<long>(count) &&
+             slices[static_cast<std::size_t>(i)].worst >= 0 &&
+             slices[static_cast<std::size_t>(i)].worst < tolerance;
     };
     const auto middle = static_cast<long>((0.5 * (helix_.low + helix_.high) - lowest) / step);
     long first = middle;
@@ -645,8 +746,8 @@ class HelixFit {
     while (is_on_it(last + 1)) {
       ++last;
     }
-    helix_.low = lowest + static_cast<double>(first) * step;
-    helix_.high = lowest + static_cast<double>(last + 1) * step;
+    helix_.low = slices[static_cast<std::size_t>(first)].low;
+    helix_.high = slices[static_cast<std::size_t>(last)].high;
   }
 
   // Points that axis and pitch are found from, and those for a first look; spread of these from
@@ -655,17 +756,22 @@ class HelixFit {
   static constexpr double kFewPoints = 1000;
   static constexpr double kNearly = 0.15;
   static constexpr int kRounds = 5;
-  static constexpr double kAsInMiddle = 1.7;  ///< Largest distance over that in the middle.
+  static constexpr double kAsInMiddle = 1.7;       ///< Largest distance over that in the middle.
+  static constexpr double kLeastTolerance = 8e-3;  ///< Of the depth.
   static constexpr double kNoise = 1e-3;  ///< Of the depth; what files round vertices by. A choice.
-  // How far the part may be from the helix in the end, chords of its mesh included, and before axis
-  // and pitch are mended, of the depth. Both are choices.
+  // How far the part's vertices may be from the helix in the end, and before axis and pitch are
+  // mended, of the depth. Both are choices.
   static constexpr double kConforms = 0.02;
   static constexpr double kBefore = 0.08;
 
+  using Corners = std::array<std::uint32_t, 3>;
+
   const Mesh& mesh_;
-  const std::vector<Facet>& facets_;
+  const std::vector<SurfacePoint>& points_;
+  const Axis& axis_;
   Helix helix_;
   double least_{0}, largest_{0}, depth_{0};
+  double off_{0};  ///< Largest distance of a vertex from the helix where it was drawn [m].
 };
 
 }  // namespace
@@ -679,17 +785,25 @@ std::vector<Helix> FindHelices(const Mesh& mesh, const std::vector<spatial::Surf
     area += CalcArea(mesh, t);
     box.Add(mesh.vertices[mesh.triangles[t][0]]);
   }
-  for (const Axis& axis : ListAxes(mesh, faces, box.size().norm())) {
+  const std::vector<SurfacePoint> points = ListPoints(mesh, faces);
+  std::vector<Axis> axes = ListAxes(mesh, faces, box.size().norm());
+  if (const auto screw = FindScrewAxis(points, box)) {
+    axes.push_back(*screw);
+  }
+  for (const Axis& axis : axes) {
     if (helices.size() == kMaxHelices) {
       break;
     }
-    const std::vector<Facet> facets = ListFacets(mesh, axis);
-    const auto [pitch, flanks] = FindPitch(facets);
+    const auto [pitch, flanks] = FindPitch(points, axis);
     if (flanks < kLeastShare * area) {
       continue;
     }
-    auto helix = HelixFit(mesh, facets, axis, pitch).Run();
-    if (helix) {
+    auto helix = HelixFit(mesh, points, axis, pitch).Run();
+    const auto is_known = [&helix](const Helix& other) {
+      const Vec3 middle = helix->origin + 0.5 * (helix->low + helix->high) * helix->axis;
+      return IsInThread(other, Locate(other, middle), other.largest_radius);
+    };
+    if (helix && std::none_of(helices.begin(), helices.end(), is_known)) {
       helices.push_back(std::move(*helix));
     }
   }

@@ -8,9 +8,6 @@
 
 namespace hvas::contact {
 
-/** Threads of a part that are looked for. A choice: parts with modelled threads have one or two. */
-inline constexpr std::size_t kMaxHelices = 4;
-
 /** Finds the threads that are modelled in a mesh. About each axis that a face of revolution has,
  the pitches of all triangles, -2 pi r n_phi / n_z with n the normal, are counted: those of a thread
  are equal, whatever its profile. Axis and pitch are then moved until vertices of the same height on

@@ -8,6 +8,9 @@ namespace hvas::contact {
 namespace {
 
 const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::body.
+// Points of a leaf beside threads that are deep in one another, whose flanks bear what there is to
+// bear. A choice.
+constexpr std::uint32_t kBesideThread = 4;
 constexpr double kScreened = 0.2e-6;                 // [m]; what single precision may be wrong by.
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
@@ -102,13 +105,22 @@ double AllowedDepth(const Allowance& allowance, const SampleFaces& sample, std::
   return is_own && (face == kNoFace || IsAllowed(other, face)) ? allowance.depth : 0;
 }
 
-// Shell::thread of the points on a thread.
-std::uint8_t NumberOf(const Shape::Data& shape, const Helix& thread) {
-  return static_cast<std::uint8_t>(&thread - shape.helices.data() + 1);
+ThreadSamples SamplesOf(const Shape::Data& shape, const Helix* thread, bool is_deep) {
+  if (thread == nullptr) {
+    return {};
+  }
+  const auto number = static_cast<std::uint8_t>(thread - shape.helices.data() + 1);
+  return {number, is_deep ? static_cast<std::uint8_t>(number + kMaxHelices) : std::uint8_t{0}};
 }
 
-Refined RefineAtThread(const Helix& thread, const HelixPoint& at) {
-  const HelixDistance found = CalcHelixDistance(thread, at);
+// Whether nothing but a thread can be the nearest of a shape there.
+bool IsNearestThread(const Shape::Data& shape, const Helix& thread, const Vec3& p) {
+  const ZoneAt zone = FindZone(shape, p);
+  return zone.is_list() && shape.list_thread[zone.payload()] == &thread - shape.helices.data() + 1;
+}
+
+Refined RefineAtThread(const Helix& thread, const HelixPoint& at, double limit) {
+  const HelixDistance found = CalcHelixDistance(thread, at, limit);
   Refined refined;
   refined.distance = found.distance;
   refined.gradient = found.gradient;
@@ -162,10 +174,11 @@ void BodyQuery::Collect(BodyId id, const Placed& scene) noexcept {
   NearBody& near = work_->bodies[work_->body_count++];
   near.body = id;
   near.threads = FindThreads(id, scene);
-  CollectLeaves(held_, held_.shape->shell, scene, near.threads.held, &near.first[0],
-                &near.count[0]);
-  CollectLeaves(scene, scene.shape->features, held_, near.threads.scene, &near.first[1],
-                &near.count[1]);
+  const auto& [ours, theirs, is_deep] = near.threads;
+  CollectLeaves(held_, held_.shape->shell, scene, SamplesOf(*held_.shape, ours, is_deep),
+                &near.first[0], &near.count[0]);
+  CollectLeaves(scene, scene.shape->features, held_, SamplesOf(*scene.shape, theirs, is_deep),
+                &near.first[1], &near.count[1]);
 }
 
 ThreadPair BodyQuery::FindThreads(BodyId id, const Placed& scene) const noexcept {
@@ -178,8 +191,10 @@ ThreadPair BodyQuery::FindThreads(BodyId id, const Placed& scene) const noexcept
   const RelativePose X_SH(scene, held_);
   for (const Helix& ours : held_.shape->helices) {
     for (const Helix& theirs : scene.shape->helices) {
-      if (IsThreadIn(theirs, ours, X_SH.R, X_SH.p)) {
-        return {&ours, &theirs};
+      const double overlap = CalcThreadOverlap(theirs, ours, X_SH.R, X_SH.p);
+      if (overlap > 0) {
+        constexpr double kDeep = 2;  // Pitches: there are whole turns on both sides. A choice.
+        return {&ours, &theirs, overlap > kDeep * ours.pitch};
       }
     }
   }
@@ -193,7 +208,7 @@ double BodyQuery::Reach(const Placed& sampled, const Placed& field,
 }
 
 void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                              const Helix* thread, std::uint32_t* first,
+                              const ThreadSamples& left_out, std::uint32_t* first,
                               std::uint32_t* count) noexcept {
   const RelativePose X(field, sampled);
   LeafBuffer out;
@@ -202,11 +217,10 @@ void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const P
   kernel_.collect(shell.view, field.shape->field.view, X.Single(),
                   static_cast<float>(Reach(sampled, field, X)), &out);
   work_->stats.is_truncated = work_->stats.is_truncated || out.is_truncated;
-  if (thread != nullptr) {
+  if (left_out.number != 0) {
     // What is on its thread is met by its edges, and by what the other has beside its own thread.
-    const std::uint8_t number = NumberOf(*sampled.shape, *thread);
     const auto* kept = std::remove_if(out.leaves, out.leaves + out.count, [&](std::uint32_t leaf) {
-      return shell.leaf_thread[leaf] == number;
+      return left_out.Has(shell.leaf_thread[leaf]);
     });
     out.count = static_cast<std::uint32_t>(kept - out.leaves);
   }
@@ -237,11 +251,13 @@ void BodyQuery::Share() noexcept {
   }
 }
 
-LeafChoice BodyQuery::Choose(std::uint32_t first, std::uint32_t count) const noexcept {
+LeafChoice BodyQuery::Choose(std::uint32_t first, std::uint32_t count,
+                             std::uint32_t most) const noexcept {
   LeafChoice choice;
+  choice.points = most;
   choice.leaves = work_->leaves.data() + first;
   choice.count = count;
-  if (8.0 * count > share_) {
+  if (most * static_cast<double>(count) > share_) {
     choice.points = static_cast<std::uint32_t>(std::max(1.0, share_ / count));
     choice.stride = static_cast<std::uint32_t>(std::max(1.0, std::ceil(count / share_)));
   }
@@ -348,12 +364,13 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   HitBuffer hits;
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
-  const LeafChoice choice = Choose(body.first[kIsReverse ? 1 : 0], leaf_count);
+  const std::uint32_t most = body.threads.is_deep ? kBesideThread : 8;
+  const LeafChoice choice = Choose(body.first[kIsReverse ? 1 : 0], leaf_count, most);
   const ExactTable& exact = field.shape->exact;
   kernel_.test(shell.view, field.shape->field.view,
                {exact.zones.data(), exact.forms.data(), exact.list_faces.data()}, X.Single(),
                static_cast<float>(Reach(sampled, field, X)), choice, &hits);
-  const bool is_thinned = choice.points < 8 || choice.stride > 1;
+  const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? 8 * leaf_count - hits.points_tested : 0;
   work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated;
@@ -373,8 +390,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   };
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
-  const std::uint8_t own_number =
-      own_thread != nullptr ? NumberOf(*sampled.shape, *own_thread) : std::uint8_t{0};
+  const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
   const std::uint32_t step = Stride(hits.count);
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
@@ -389,14 +405,15 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       filter.bits = BitsOf(faces, own_mask);
     }
     std::uint32_t own_face = kNoFace;
-    if (own_thread != nullptr && shell.thread[hit.point] == own_number) {
+    if (left_out.number != 0 && left_out.Has(shell.thread[hit.point])) {
       continue;  // Its edges answer.
     }
     HelixPoint at_thread;
     bool is_at_thread = false;
     if (other_thread != nullptr) {
       at_thread = Locate(*other_thread, p_F);
-      is_at_thread = IsInThread(*other_thread, at_thread, margin_);
+      is_at_thread = IsInThread(*other_thread, at_thread, margin_) ||
+                     IsNearestThread(*field.shape, *other_thread, p_F);
     }
     if (!is_at_thread && IsScreened(sampled, field, hit, filter)) {
       if (filter.Drops(hit.face)) {
@@ -423,7 +440,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
         continue;
       }
     }
-    const Refined r = is_at_thread ? RefineAtThread(*other_thread, at_thread)
+    const Refined r = is_at_thread ? RefineAtThread(*other_thread, at_thread, margin_)
                                    : RefineActual(*field.shape, field.offsets, p_F, hit, filter);
     contact.allowance = allowed_depth(faces, r.face);
     // So deep inside, the field knows no face: for a sample of faces that something else answers

@@ -23,6 +23,17 @@ inline constexpr std::size_t kMaxQueryBodies = 512;
 struct ThreadPair {
   const Helix* held{nullptr};
   const Helix* scene{nullptr};
+  bool is_deep{false};  ///< By so much that what is left of flanks at their ends does not matter.
+};
+
+/** Which samples of a part the edges of its thread stand for. */
+struct ThreadSamples {
+  std::uint8_t number{0};  ///< Those of which Shell::thread is this; 0: none.
+  std::uint8_t beyond{0};  ///< And these; 0: none.
+
+  [[nodiscard]] bool Has(std::uint8_t thread) const noexcept {
+    return thread != 0 && (thread == number || thread == beyond);
+  }
 };
 
 /** A body near the held part, and the leaves of either shell that are near the other's surface. */
@@ -119,9 +130,9 @@ class BodyQuery {
   bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
   /** Finds what is allowed with a body; null where nothing is. */
   [[nodiscard]] const Allowance* FindAllowance(BodyId id) const noexcept;
-  /** @param thread  The sampled one's that is in one of the other's; null: none. */
   void CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                     const Helix* thread, std::uint32_t* first, std::uint32_t* count) noexcept;
+                     const ThreadSamples& left_out, std::uint32_t* first,
+                     std::uint32_t* count) noexcept;
   [[nodiscard]] ThreadPair FindThreads(BodyId id, const Placed& scene) const noexcept;
   template <bool kIsReverse>
   void ThreadEdges(const Placed& sampled, const Helix& own, const Placed& field, const Helix& other,
@@ -129,7 +140,9 @@ class BodyQuery {
   /** The margin for the field of the part as drawn in single precision. */
   [[nodiscard]] double Reach(const Placed& sampled, const Placed& field,
                              const RelativePose& X_FS) const noexcept;
-  [[nodiscard]] LeafChoice Choose(std::uint32_t first, std::uint32_t count) const noexcept;
+  /** @param most  Points of a leaf. */
+  [[nodiscard]] LeafChoice Choose(std::uint32_t first, std::uint32_t count,
+                                  std::uint32_t most) const noexcept;
   template <bool kIsReverse>
   void Samples(const Placed& sampled, const Shell& shell, const Placed& field, bool has_ignored,
                const NearBody& body) noexcept;

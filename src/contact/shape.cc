@@ -161,7 +161,7 @@ ShapeMemory Shape::CalcMemory() const noexcept {
       Bytes(d.field.top) + Bytes(d.field.nodes) + Bytes(d.field.slack) + Bytes(d.field.coarse);
   memory.tables = Bytes(d.exact.faces) + Bytes(d.exact.deviation) + Bytes(d.exact.zones) +
                   Bytes(d.exact.list_begin) + Bytes(d.exact.listed) + Bytes(d.exact.list_faces) +
-                  Bytes(d.exact.forms) + Bytes(d.helices);
+                  Bytes(d.exact.forms) + Bytes(d.helices) + Bytes(d.list_thread);
   memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normals) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
                 Bytes(m.vertex_normals) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);

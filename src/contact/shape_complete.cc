@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "contact/shape_data.h"
 
@@ -67,14 +68,33 @@ void OrderLeaves(Shell* shell) {
   shell->Bind();
 }
 
-/** On which thread a point lies: one more than its number, or 0. */
+/** Shell::thread of a point. */
 std::uint8_t ThreadOf(const Vec3& p, const std::vector<Helix>& helices) {
   for (std::size_t i = 0; i < helices.size(); ++i) {
-    if (IsInThread(helices[i], Locate(helices[i], p), helices[i].deviation)) {
+    const Helix& helix = helices[i];
+    const HelixPoint at = Locate(helix, p);
+    if (IsInThread(helix, at, helix.deviation)) {
       return static_cast<std::uint8_t>(i + 1);
+    }
+    // Beyond the span crests are cut off, but what is left of flanks goes on.
+    constexpr double kBeyond = 1;  // Of a pitch. A choice.
+    const double reach = kBeyond * helix.pitch;
+    if (at.height > helix.low - reach && at.height < helix.high + reach &&
+        std::abs(CalcHelixDistance(helix, at).distance) < helix.deviation) {
+      return static_cast<std::uint8_t>(i + 1 + kMaxHelices);
     }
   }
   return 0;
+}
+
+/** That of the points of a leaf together. */
+std::uint8_t ThreadOf(std::span<const std::uint8_t> points) {
+  const std::uint8_t last = *std::max_element(points.begin(), points.end());
+  const auto within = static_cast<std::uint8_t>(last > kMaxHelices ? last - kMaxHelices : last);
+  const bool is_one = std::all_of(points.begin(), points.end(), [&](std::uint8_t thread) {
+    return thread == last || thread == within;
+  });
+  return is_one ? last : 0;
 }
 
 void FindThreadPoints(const std::vector<Helix>& helices, Shell* shell) {
@@ -84,11 +104,29 @@ void FindThreadPoints(const std::vector<Helix>& helices, Shell* shell) {
     for (std::size_t k = 8 * leaf; k < 8 * leaf + 8; ++k) {
       shell->thread.push_back(ThreadOf(shell->point(k), helices));
     }
-    const auto first = shell->thread.end() - 8;
-    const bool is_one = std::all_of(first, first + shell->leaf_count[leaf],
-                                    [first](std::uint8_t thread) { return thread == *first; });
-    shell->leaf_thread.push_back(is_one ? *first : std::uint8_t{0});
+    shell->leaf_thread.push_back(
+        ThreadOf(std::span(shell->thread).subspan(8 * leaf, shell->leaf_count[leaf])));
   }
+}
+
+std::vector<std::uint8_t> FindThreadLists(const Shape::Data& shape) {
+  std::vector<std::uint8_t> on_thread;
+  for (const Vec3& p : shape.mesh.vertices) {
+    const std::uint8_t thread = ThreadOf(p, shape.helices);
+    on_thread.push_back(thread <= kMaxHelices ? thread : std::uint8_t{0});
+  }
+  const ExactTable& exact = shape.exact;
+  std::vector<std::uint8_t> threads(exact.list_begin.size() - 1);
+  for (std::size_t list = 0; list < threads.size(); ++list) {
+    std::vector<std::uint8_t> corners;
+    for (std::size_t i = exact.list_begin[list]; i < exact.list_begin[list + 1]; ++i) {
+      for (const std::uint32_t v : shape.mesh.triangles[exact.Listed(i).triangle]) {
+        corners.push_back(on_thread[v]);
+      }
+    }
+    threads[list] = corners.empty() ? std::uint8_t{0} : ThreadOf(corners);
+  }
+  return threads;
 }
 
 template <typename... T>
@@ -165,6 +203,10 @@ void Shape::Data::Complete() {
   }
   FindThreadPoints(helices, &shell);
   FindThreadPoints(helices, &features);
+  list_thread.clear();
+  if (!helices.empty() && !exact.list_begin.empty()) {
+    list_thread = FindThreadLists(*this);
+  }
   OrderLeaves(&shell);
   OrderLeaves(&features);
   Shrink(&mesh);

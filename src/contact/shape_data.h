@@ -97,7 +97,7 @@ struct Shell {
   std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
   std::size_t point_count{0};
   // Of a shape with threads, Complete fills them: one more than the number of the thread on which a
-  // point lies, and on which all points of a leaf lie, or 0.
+  // point lies, or all points of a leaf, and kMaxHelices more beyond its span; 0: on none.
   std::vector<std::uint8_t> thread;
   std::vector<std::uint8_t> leaf_thread;
 
@@ -125,6 +125,9 @@ struct Shape::Data {
   Field field;
   ExactTable exact;
   std::vector<Helix> helices;  ///< Threads that are modelled; mostly none.
+  /** Of a shape with threads, for each list of zones one more than the number of the thread on
+   which all of its triangles lie, or 0; Complete fills it. */
+  std::vector<std::uint8_t> list_thread;
   double spacing{0};
   Shell shell;  ///< All samples.
   Shell
