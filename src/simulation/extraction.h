@@ -266,6 +266,7 @@ class Extraction {
   struct WhatBends {
     product::OccurrenceId part;
     Bending bending;
+    double inward_sign{1};  ///< 1 where the normal of contact points into the part, else -1.
   };
 
   /** What was tried last, so that it is tried again only when something has changed. */
@@ -320,7 +321,10 @@ class Extraction {
                                                        const Vec3& direction, double width) const;
   /** How far a part and another one overlap across the way, all along it. */
   [[nodiscard]] GivingSamples SampleGiving(product::OccurrenceId id, product::OccurrenceId other,
-                                           const Vec3& direction);
+                                           bool gives_itself, const Vec3& direction);
+  /** Notes what of a part that gives bends, or which side of it is squeezed. */
+  void NoteForm(const GivingSamples& samples, const WhatBends* arm, const Vec3& direction,
+                GivingPair* give) const;
   /** What squeezes an O-ring on its way between two parts by more than its section bears: stretched
    over one of them alone it gives far more. @pre As VisitContacts(). */
   [[nodiscard]] std::optional<Obstacle> FindSqueezed(product::OccurrenceId id,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "simulation/bending_form.h"
+#include "simulation/bent_arms.h"
 #include "simulation/extraction.h"
 #include "simulation/giving_force.h"
 #include "simulation/giving_width.h"
@@ -164,7 +165,7 @@ std::optional<Extraction::WhatBends> Extraction::FindWhatBends(OccurrenceId id, 
         (!least || bending->strain < least->bending.strain) &&
         HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W, inward_W,
                       width)) {
-      least = WhatBends{part, *bending};
+      least = WhatBends{part, *bending, inward_W.dot(nhat_W) > 0 ? 1.0 : -1.0};
     }
   };
   for (const bool is_own : {true, false}) {
@@ -180,7 +181,8 @@ std::optional<Extraction::WhatBends> Extraction::FindWhatBends(OccurrenceId id, 
   return least;
 }
 
-GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, const Vec3& direction) {
+GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, bool gives_itself,
+                                       const Vec3& direction) {
   constexpr int kSamples = 120;         // A choice: ramps of a hook have some tens of them.
   constexpr double kFinest = 10e-6;     // [m]; contact is no finer.
   constexpr double kLeastAcross = 0.3;  // Normals that lead on say nothing of how far it gives.
@@ -206,6 +208,17 @@ GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, cons
           until = travelled;
           samples.travelled = contact.distance < deepest.distance ? travelled : samples.travelled;
           deepest = contact.distance < deepest.distance ? contact : deepest;
+          MetFace& met =
+              samples.by_face[gives_itself ? contact.held_face : contact.scene_face];
+          if (met.contact.distance < 0 &&
+              met.contact.nhat_W.dot(contact.nhat_W) < kOppositeNormals) {
+            met.opposite = contact;
+            met.opposite_travelled = travelled;
+          }
+          if (contact.distance < met.contact.distance) {
+            met.contact = contact;
+            met.travelled = travelled;
+          }
         }
       });
   samples.spacing = std::max(kFinest, (until + step) / kSamples);
@@ -329,6 +342,29 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
   return std::nullopt;
 }
 
+void Extraction::NoteForm(const GivingSamples& samples, const WhatBends* arm,
+                          const Vec3& direction, GivingPair* give) const {
+  if (give->curve == nullptr) {
+    return;
+  }
+  const product::Part& part = product_.part_of(give->flexible);
+  const bool is_own = give->moved == give->flexible;
+  const Vec3 p_W =
+      samples.deepest.p_WC - (is_own ? samples.travelled : 0.0) * direction;
+  const Vec3 p_B = product_.occurrences[give->flexible.index()].X_WB.Inverse() * p_W;
+  if (give->curve->squeezed) {
+    const Vec3 size = part.box_B.size();
+    const double middle = 0.5 * (size.maxCoeff() - size.minCoeff());
+    Vec3 off_B = p_B - part.box_B.centre();
+    Eigen::Index axis = 0;
+    (void)size.minCoeff(&axis);
+    off_B[axis] = 0;
+    give->is_outside = off_B.norm() > middle;
+  } else if (arm != nullptr && arm->part == give->flexible) {
+    give->arms = FindBentArms(product_, *give, samples, arm->inward_sign, direction);
+  }
+}
+
 void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
   SetUnit({id}, true);
   const std::map<OccurrenceId, Meeting> meetings = MeasureMeetings(id, direction);
@@ -355,7 +391,7 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
       std::swap(give.flexible, give.other);
     }
     give.moved = id;
-    const GivingSamples samples = SampleGiving(id, other, direction);
+    const GivingSamples samples = SampleGiving(id, other, give.flexible == id, direction);
     // The nearest way out of a small hook leads along its way: its ramp tells where its arm is.
     Meeting on_ramp = meeting;
     on_ramp.sideways = samples.deepest;
@@ -363,6 +399,7 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
     const auto arm = bending ? bending : FindWhatBends(id, other, on_ramp, direction, give.width);
     give.curve = MakeGivingCurve(product_, give, samples,
                                  arm && arm->part == give.flexible ? &arm->bending : nullptr);
+    NoteForm(samples, arm ? &*arm : nullptr, direction, &give);
     gives_.push_back(give);
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
     allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);

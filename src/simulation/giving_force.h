@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -10,6 +12,18 @@
 /** What it takes to pass a part that gives: docs/algorithms/flexible.md. */
 namespace hvas::simulation {
 
+/** Normals of contact that differ by more than 120 degrees are on opposite sides: their dot. A
+ choice. */
+inline constexpr double kOppositeNormals = -0.5;
+
+/** What of a face lies in another part on the way. */
+struct MetFace {
+  contact::Contact contact{};   ///< The deepest.
+  double travelled{0};          ///< Where on the way that is [m].
+  contact::Contact opposite{};  ///< One on the opposite side; its distance is 0 where none is.
+  double opposite_travelled{0};  ///< [m]
+};
+
 /** How far two parts overlap across the way of one of them. */
 struct GivingSamples {
   double spacing{1};          ///< [m]
@@ -17,6 +31,7 @@ struct GivingSamples {
   double breadth{0};          ///< How broad they overlap, across way and deflection [m].
   contact::Contact deepest{};  ///< Its distance is 0 where they do not overlap.
   double travelled{0};         ///< Where on the way that is [m].
+  std::map<std::uint32_t, MetFace> by_face;  ///< By face of the part that gives.
 };
 
 /** The forces of a pair along the way of the part that is moved; null where no formula is known for

@@ -425,6 +425,7 @@ Result<std::shared_ptr<const Model>> CompileWithShapes(
     return Unexpected(ordered.error());
   }
   model->presses = ListAllPresses(*product, model->sequence);
+  model->deformables = ListDeformables(*product, model->sequence, model->presses);
   MakeFits(model.get(), diagnostics);
   GiveActualFaces(model.get(), diagnostics);
   RelieveWays(input.stop, model.get(), diagnostics);
@@ -534,6 +535,8 @@ std::shared_ptr<const Model> ChangeOrder(const Model& model, std::vector<Sequenc
   auto changed = std::make_shared<Model>(model);
   changed->sequence.steps = std::move(steps);
   changed->presses = ListAllPresses(*changed->product, changed->sequence);
+  changed->deformables =
+      ListDeformables(*changed->product, changed->sequence, changed->presses);
   RelieveWays(stop, changed.get(), diagnostics);
   return changed;
 }

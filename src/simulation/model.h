@@ -20,6 +20,7 @@
 #include "mates/thread_joints.h"
 #include "product/drive_forms.h"
 #include "product/product.h"
+#include "simulation/deformation.h"
 #include "simulation/pressed_pairs.h"
 #include "simulation/sequence.h"
 
@@ -98,6 +99,7 @@ struct Model {
   std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
   Sequence sequence;
   std::vector<PressedPair> presses;  ///< What parts press together on their way, in this order.
+  std::vector<Deformable> deformables;  ///< Parts that are drawn deformed, in this order.
   Accessories accessories;
   double table_z{0};            ///< [m]
   Vec3 centre_W{Vec3::Zero()};  ///< The product's.

@@ -158,6 +158,7 @@ class PressSearch {
     PressedPair pair;
     pair.moved = step.occurrence;
     pair.compression = CalcOverlap(id, *presser);
+    pair.against = *presser;
     OccurrenceId at = id;
     double end = -sign;
     while (true) {
@@ -176,6 +177,7 @@ class PressSearch {
       pair.compression += CalcOverlap(at, *next);
       if (!IsElastic(*next)) {
         pair.support = *next;
+        pair.against = is_own ? pair.against : pair.support;
         break;
       }
       end = AxisOf(*next).dot(end * AxisOf(at)) > 0 ? 1 : -1;

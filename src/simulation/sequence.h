@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -77,6 +78,20 @@ struct DrawnOverlap {
   }
 };
 
+/** An arm or a wall of a part that bends aside, in the part's frame B. */
+struct BentArm {
+  Vec3 root_B{Vec3::Zero()};      ///< In the middle of its section at the root.
+  Vec3 axis_B{Vec3::UnitZ()};     ///< Unit, from the root to the tip.
+  Vec3 aside_B{Vec3::UnitX()};    ///< Unit, across the axis: where it bends.
+  double length{0};               ///< From the root to where it is pushed aside [m].
+  std::array<double, 2> range{};  ///< Least and largest distance from the root along aside_B [m].
+  std::array<double, 2> across{};  ///< Likewise along axis_B x aside_B [m].
+  /** It goes all the way round an axis through `root_B`: then `range` has its radii, and aside_B
+   points to where it is pushed. */
+  bool is_round{false};
+  bool bends_inwards{false};  ///< Round: towards the axis.
+};
+
 /** A part that gives while it passes another one: a snap hook, a retaining ring, an O-ring. */
 struct GivingPair {
   product::OccurrenceId flexible;
@@ -88,6 +103,9 @@ struct GivingPair {
   /** What it takes, along the way of the one that is moved; null where no formula is known for it.
    */
   std::shared_ptr<const haptics::GivingCurve> curve;
+  std::vector<BentArm> arms;  ///< Hook, wall: what of it bends; empty where that is not found.
+  /** O-ring: what squeezes it passes outside of it; else inside. */
+  bool is_outside{false};
 };
 
 /** How far a face gives way where it lies in another part as drawn, or would on its way in. */

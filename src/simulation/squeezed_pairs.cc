@@ -1,6 +1,7 @@
 // Slit pins and sleeves of rubber that a hole or a shaft presses all around.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -37,8 +38,9 @@ struct ElasticMate {
 
 /** How much smaller its radius is in its place, or how much wider, and its radial force then. */
 struct Squeeze {
-  double given{0};      // [m]
-  double stiffness{0};  // [N/m]
+  double given{0};                     // [m]
+  double stiffness{0};                 // [N/m]
+  std::array<double, 2> growth{0, 0};  // Of inner and outer radius, as drawn in its place [m].
   const char* source{""};
 };
 
@@ -49,7 +51,9 @@ Squeeze CalcPinSqueeze(const ElasticPart& pin, double hole_radius, double length
   const double stiffness = fits::CalcSpreadStiffness(
       {0.5 * (pin.free_size - pin.thickness), pin.thickness, length, pin.modulus});
   // Beyond its yield it resists by no more.
-  return {stiffness > 0 ? std::min(given, force / stiffness) : 0, stiffness,
+  return {stiffness > 0 ? std::min(given, force / stiffness) : 0,
+          stiffness,
+          {-given, -given},
           "open ring that its hole closes, Timoshenko, up to its yield"};
 }
 
@@ -60,12 +64,19 @@ Squeeze CalcSleeveSqueeze(const ElasticPart& sleeve, const ElasticMate& side, do
   const double outside = 0.5 * sleeve.free_size;
   const fits::RubberSleeve law{bore, outside, length, sleeve.modulus};
   if (gap > 0) {
-    return {outside - bore - gap, fits::CalcSleeveStiffness(law),
+    const double given = outside - bore - gap;
+    return {given,
+            fits::CalcSleeveStiffness(law),
+            side.is_shaft ? std::array{0.0, -given} : std::array{given, 0.0},
             "wall of rubber, Gent and Lindley"};
   }
   const double given =
       side.is_shaft ? outside - side.mate->hole_radius : side.mate->shaft_radius - bore;
-  return {given, fits::CalcSleeveHoopStiffness(law), "ring of rubber under hoop tension"};
+  const double grows = side.is_shaft ? -given : given;
+  return {given,
+          fits::CalcSleeveHoopStiffness(law),
+          {grows, grows},
+          "ring of rubber under hoop tension"};
 }
 
 /** Length of the shaft in the hole once the shaft is `travel` out along the mate's z, or against
@@ -152,11 +163,11 @@ class SqueezeSearch {
     if (!(squeeze.given > kLeastPressed) || !(squeeze.stiffness > 0)) {
       return;
     }
-    AddPair(step, side, squeeze, direction);
+    AddPair(step, side, squeeze, direction, is_own ? side.other : own);
   }
 
   void AddPair(const SequenceStep& step, const ElasticMate& side, const Squeeze& squeeze,
-               double direction) {
+               double direction, OccurrenceId against) {
     const Mate& mate = *side.mate;
     const double length = CalcEngaged(mate, 0);
     const double until =
@@ -178,7 +189,9 @@ class SqueezeSearch {
     pair.support = side.other;
     pair.compression = squeeze.given;
     pair.force = haptics::CalcGivingPeak(*curve).in;
+    pair.against = against;
     pair.is_radial = true;
+    pair.growth = squeeze.growth;
     pair.source = squeeze.source;
     pair.curve = std::move(curve);
     pairs_.push_back(std::move(pair));

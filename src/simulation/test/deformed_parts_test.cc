@@ -1,0 +1,252 @@
+// The parts of products that are drawn deformed while others are on their way.
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mates/elastic_parts.h"
+#include "product/test/coil_mesh.h"
+#include "simulation/deformation.h"
+#include "simulation/test/session.h"
+#include "simulation/test/small_products.h"
+
+namespace hvas::simulation {
+namespace {
+
+using testing::OccurrenceId;
+using testing::Pose;
+using testing::Product;
+
+constexpr double kBufferFloor = 5e-3;  // [m]
+const product::testing::Coil kBufferCoil{2e-3, 14e-3, 5, 4e-3, 1};
+
+std::shared_ptr<const Model> CompileDeformed(Product product) {
+  Diagnostics diagnostics;
+  auto model =
+      Compile(std::make_shared<Product>(std::move(product)), testing::FastOptions(), &diagnostics);
+  EXPECT_TRUE(model) << model.error().message;
+  EXPECT_TRUE((*model)->sequence.gaps.empty());
+  return *model;
+}
+
+std::vector<Pose> PosesInPlace(const Model& model) {
+  std::vector<Pose> poses;
+  for (const Body& body : model.bodies) {
+    poses.push_back(body.X_WB_goal);
+  }
+  return poses;
+}
+
+/** Amounts with one part so far on its way out, and all others in their place. */
+std::vector<double> AmountsAt(const Model& model, OccurrenceId id, double travel,
+                              const Vec3& aside_W = Vec3::Zero()) {
+  std::vector<Pose> poses = PosesInPlace(model);
+  const SequenceStep* step = FindInsertion(model.sequence, id);
+  Pose& X_WB = poses[id.index()];
+  X_WB = Pose(X_WB.q(), X_WB.p() + travel * step->extraction_W + aside_W);
+  return CalcDeformations(model, poses);
+}
+
+/** A cylinder, a coil spring in it, and a piston on the spring. */
+Product PistonOnLongSpring(double longer) {
+  Product product;
+  product.name = "buffer";
+  const auto mesh = product::testing::MakeCoil(kBufferCoil);
+  contact::ShapeSource coil{mesh.vertices, mesh.triangles, {}, {}};
+  coil.triangle_face.assign(coil.triangles.size(), 0);
+  spatial::Surface surface;
+  surface.kind = spatial::SurfaceKind::kFreeform;
+  coil.faces.push_back(surface);
+  const auto cylinder = testing::AddPart(&product, "cylinder",
+                                         contact::testing::Cup(10e-3, 16e-3, kBufferFloor, 50e-3));
+  const auto spring = testing::AddPart(&product, "spring", coil);
+  const auto piston =
+      testing::AddPart(&product, "piston", contact::testing::Shaft(10e-3, 40e-3, 20e-6));
+  testing::Place(&product, cylinder, "cylinder");
+  testing::Place(&product, spring, "spring", Pose(Vec3(0, 0, kBufferFloor)));
+  testing::Place(&product, piston, "piston", Pose(Vec3(0, 0, kBufferFloor + mesh.length)));
+  testing::Complete(&product);
+  mates::StatedElastic stated;
+  stated.part = "spring";
+  stated.free_size = mesh.length + longer;
+  const auto set = mates::SetElasticParts({stated}, &product);
+  EXPECT_TRUE(set) << set.error().message;
+  return product;
+}
+
+/** A block, two equal gaskets on it, each 2 mm thick as drawn, and a lid. */
+Product LidOnThickGaskets(double free_thickness) {
+  Product product;
+  product.name = "box";
+  const auto block =
+      testing::AddPart(&product, "block", contact::testing::Bushing(15e-3, 30e-3, 20e-3, 20e-6));
+  const auto gasket =
+      testing::AddPart(&product, "gasket", contact::testing::Bushing(18e-3, 28e-3, 2e-3, 20e-6));
+  const auto lid = testing::AddPart(&product, "lid", contact::testing::Shaft(30e-3, 5e-3, 20e-6));
+  testing::Place(&product, block, "block");
+  testing::Place(&product, gasket, "first gasket", Pose(Vec3(0, 0, 20e-3)));
+  testing::Place(&product, gasket, "second gasket", Pose(Vec3(0, 0, 22e-3)));
+  testing::Place(&product, lid, "lid", Pose(Vec3(0, 0, 24e-3)));
+  testing::Complete(&product);
+  std::vector<mates::StatedElastic> stated(2);
+  stated[0].part = "first gasket";
+  stated[1].part = "second gasket";
+  stated[0].free_size = stated[1].free_size = free_thickness;
+  const auto set = mates::SetElasticParts(stated, &product);
+  EXPECT_TRUE(set) << set.error().message;
+  return product;
+}
+
+double TopOf(const Model& model, const Deformable& part, double amount) {
+  double top = -1;
+  for (const Vec3& vertex : model.product->part_of(part.occurrence).mesh.vertices) {
+    top = std::max(top, Deform(part.form, amount, vertex).z());
+  }
+  return top;
+}
+
+TEST(DeformedParts, ASpringIsDrawnLongerUntilItIsPressed) {
+  const auto model = CompileDeformed(PistonOnLongSpring(6e-3));
+  ASSERT_EQ(model->deformables.size(), 1U);
+  const Deformable& spring = model->deformables[0];
+  EXPECT_EQ(spring.occurrence, OccurrenceId(1));
+  EXPECT_EQ(spring.form.kind, DeformationKind::kPress);
+  const OccurrenceId piston(2);
+  const double length = product::testing::MakeCoil(kBufferCoil).length;
+  // Free, half way, in its place, and with the piston beside its way.
+  EXPECT_NEAR(AmountsAt(*model, piston, 20e-3)[0], 6e-3, 1e-9);
+  EXPECT_NEAR(AmountsAt(*model, piston, 2e-3)[0], 2e-3, 1e-9);
+  EXPECT_EQ(AmountsAt(*model, piston, 0)[0], 0);
+  EXPECT_NEAR(AmountsAt(*model, piston, 2e-3, Vec3(0.1, 0, 0))[0], 6e-3, 1e-9);
+  EXPECT_NEAR(TopOf(*model, spring, 2e-3), length + 2e-3, 1e-9);
+  // What holds it stays: its lower end.
+  const Vec3 foot(7e-3, 0, 0);
+  EXPECT_LT((Deform(spring.form, 6e-3, foot) - foot).norm(), 1e-9);
+  // The whole product moved somewhere else is the same.
+  std::vector<Pose> poses = PosesInPlace(*model);
+  const Pose away(spatial::RotationTaking(Vec3::UnitX(), Vec3::UnitY()), Vec3(1, 2, 3));
+  for (Pose& X_WB : poses) {
+    X_WB = away * X_WB;
+  }
+  EXPECT_EQ(CalcDeformations(*model, poses)[0], 0);
+  // A piston that is not there presses nothing.
+  const std::vector<bool> present{true, true, false};
+  EXPECT_NEAR(CalcDeformations(*model, PosesInPlace(*model), &present)[0], 6e-3, 1e-9);
+}
+
+TEST(DeformedParts, TheUpperOneOfTwoGasketsLiesOnTheLowerOne) {
+  const auto model = CompileDeformed(LidOnThickGaskets(2.2e-3));
+  ASSERT_EQ(model->deformables.size(), 3U);
+  const OccurrenceId lid(3);
+  // Equal ones are pressed by as much as one another; the upper one comes down by what the lower
+  // one gets thinner.
+  for (const double travel : {0.1, 0.2e-3, 0.0}) {
+    const auto amounts = AmountsAt(*model, lid, travel);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Deformable& part = model->deformables[i];
+      EXPECT_EQ(part.occurrence, OccurrenceId(part.form.kind == DeformationKind::kShift ? 2 : 1 + (i > 0 ? 1U : 0U)));
+      EXPECT_NEAR(amounts[i], 0.5 * std::min(travel, 0.4e-3), 1e-8) << i << " " << travel;
+    }
+  }
+  // On its way down the upper one rests on the lower one 0.2 mm before its place.
+  std::vector<Pose> poses = PosesInPlace(*model);
+  poses[lid.index()] = Pose(Vec3(0, 0, 1));
+  for (const double before : {0.05e-3, 0.3e-3}) {
+    poses[2] = Pose(Vec3(0, 0, 22e-3 + before));
+    const auto amounts = CalcDeformations(*model, poses);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (model->deformables[i].form.kind == DeformationKind::kShift) {
+        EXPECT_NEAR(amounts[i], std::max(0.0, 0.2e-3 - before), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(DeformedParts, ACapAroundABeadOpensAllAroundByWhatTheTwoOverlap) {
+  const auto model = CompileDeformed(testing::CapOnBead(11.6e-3));
+  ASSERT_EQ(model->deformables.size(), 1U);
+  const Deformable& cap = model->deformables[0];
+  EXPECT_EQ(cap.form.kind, DeformationKind::kFlare);
+  EXPECT_EQ(cap.form.shares[0], 1);
+  EXPECT_EQ(AmountsAt(*model, OccurrenceId(1), 0.1)[0], 0);
+  double most = 0;
+  for (double travel = 0; travel < 10e-3; travel += 20e-6) {
+    most = std::max(most, AmountsAt(*model, OccurrenceId(1), travel)[0]);
+  }
+  EXPECT_NEAR(most, model->sequence.gives[0].width, 0.05 * most);
+  // Every point of its rim goes outwards by about as much, and its top stays.
+  for (const Vec3& vertex : model->product->part_of(cap.occurrence).mesh.vertices) {
+    const Vec3 moved = Deform(cap.form, most, vertex) - vertex;
+    EXPECT_LT(moved.norm(), 1.3 * most);
+    EXPECT_GE(moved.head<2>().dot(vertex.head<2>()), -1e-12);
+  }
+}
+
+/** A plate in a frame, and a lid over it on two arms whose hooks grip 1 mm under it. */
+Product LidOnTwoHooks() {
+  Product product;
+  product.name = "box";
+  const auto plate =
+      testing::AddPart(&product, "plate", contact::testing::Block(Vec3(10e-3, 30e-3, 4e-3)));
+  const auto frame = testing::AddPart(
+      &product, "frame",
+      contact::testing::Frame(Vec3(20e-3, 50e-3, 10e-3), Eigen::Vector2d(10.5e-3, 34e-3)));
+  const auto lid = testing::AddPart(&product, "lid",
+                                    contact::testing::Prism({{-33.4e-3, -3e-3},
+                                                             {-30.4e-3, -3e-3},
+                                                             {-29e-3, -0.8e-3},
+                                                             {-29e-3, -0.2e-3},
+                                                             {-30.4e-3, -0.2e-3},
+                                                             {-30.4e-3, 20e-3},
+                                                             {30.4e-3, 20e-3},
+                                                             {30.4e-3, -0.2e-3},
+                                                             {29e-3, -0.2e-3},
+                                                             {29e-3, -0.8e-3},
+                                                             {30.4e-3, -3e-3},
+                                                             {33.4e-3, -3e-3},
+                                                             {33.4e-3, 23e-3},
+                                                             {-33.4e-3, 23e-3}},
+                                                            6e-3));
+  testing::Place(&product, plate, "plate", Pose(Vec3(0, 0, 4e-3)));
+  testing::Place(&product, lid, "lid");
+  testing::Place(&product, frame, "frame", Pose(Vec3(0, 0, 4e-3)));
+  testing::Complete(&product);
+  return product;
+}
+
+TEST(DeformedParts, BothArmsOfALidBendOutwardsAndTheLidStays) {
+  const auto model = CompileDeformed(LidOnTwoHooks());
+  ASSERT_EQ(model->sequence.gives.size(), 1U);
+  const double width = model->sequence.gives[0].width;
+  ASSERT_EQ(model->deformables.size(), 2U);
+  double most = 0;
+  double at = 0;
+  for (double travel = 0; travel < 10e-3; travel += 20e-6) {
+    const auto amounts = AmountsAt(*model, OccurrenceId(1), travel);
+    EXPECT_EQ(amounts[0], amounts[1]);
+    at = amounts[0] > most ? travel : at;
+    most = std::max(most, amounts[0]);
+  }
+  EXPECT_NEAR(most, width, 0.05 * width);
+  EXPECT_EQ(AmountsAt(*model, OccurrenceId(1), 0)[0], 0);
+  for (const Vec3& vertex : model->product->part_of(OccurrenceId(1)).mesh.vertices) {
+    Vec3 p = vertex;
+    for (const Deformable& arm : model->deformables) {
+      p = Deform(arm.form, most, p);
+    }
+    const Vec3 moved = p - vertex;
+    EXPECT_NEAR(moved.x(), 0, 1e-12);
+    EXPECT_NEAR(moved.z(), 0, 1e-12);
+    if (vertex.z() > 20e-3 - 1e-9) {
+      EXPECT_LT(moved.norm(), 1e-3 * most);  // The lid, down to the roots of the arms.
+    } else {
+      EXPECT_GT(moved.y() * vertex.y(), 0);
+      EXPECT_NEAR(moved.norm(), most, 0.35 * most);  // The hooks, at the ends of the arms.
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hvas::simulation
