@@ -16,6 +16,7 @@ constexpr double kRoom = 0.94;     // of the picture, that the box may fill
 constexpr double kSharpCos = 0.8;  // normals that differ by more make an edge
 constexpr double kAmbient = 0.42;  // Share of light that falls on what faces away: a choice.
 constexpr std::array<double, 3> kMark{0.86, 0.08, 0.12};  // Red of marked faces: a choice.
+constexpr int kMostSplits = 12;       // Of a triangle of a part that bends: a choice.
 constexpr double kHiddenMark = 0.45;  // Share of red where something hides a marked face: a choice.
 
 /** What is seen at a sample. */
@@ -47,6 +48,12 @@ struct Place {
   Vec3 p;
 };
 
+/** A corner of a triangle of a part that is deformed. */
+struct Corner {
+  Vec3 p_B;  // As drawn.
+  Place place;
+};
+
 class Canvas {
  public:
   explicit Canvas(const Projection& projection)
@@ -63,10 +70,7 @@ class Canvas {
     mark_group_ = body.mark_group;
     places_.resize(mesh.vertices.size());
     std::transform(mesh.vertices.begin(), mesh.vertices.end(), places_.begin(),
-                   [&](const Vec3& v_B) {
-                     const Vec3 p_W = body.X_WB * v_B;
-                     return Place{p_W, ProjectToSamples(p_W)};
-                   });
+                   [&](const Vec3& v_B) { return PlaceOf(body, v_B); });
     for (std::size_t f = 0; f < part.faces.size(); ++f) {
       const product::Face& face = part.faces[f];
       const product::Color color = body.color.value_or(face.color.value_or(part.color));
@@ -75,6 +79,14 @@ class Canvas {
       is_marked_ = std::binary_search(body.marked_faces.begin(), body.marked_faces.end(), f);
       for (std::size_t t = first; t < first + count; ++t) {
         const auto& corners = mesh.triangles[t];
+        if (body.deform) {
+          const auto corner = [&](std::size_t k) {
+            return Corner{mesh.vertices[corners[k]], places_[corners[k]]};
+          };
+          DrawBent(body, {corner(0), corner(1), corner(2)}, kMostSplits, number,
+                   {color.r, color.g, color.b});
+          continue;
+        }
         DrawTriangle({&places_[corners[0]], &places_[corners[1]], &places_[corners[2]]}, number,
                      {color.r, color.g, color.b});
       }
@@ -115,6 +127,42 @@ class Canvas {
     Vec3 p = projection_.Project(p_WQ);
     p.head<2>() *= kSamples;
     return p;
+  }
+
+  [[nodiscard]] Place PlaceOf(const PictureBody& body, const Vec3& p_B) const {
+    const Vec3 p_W = body.X_WB * (body.deform ? body.deform(p_B) : p_B);
+    return {p_W, ProjectToSamples(p_W)};
+  }
+
+  /** Draws a triangle of a part that is deformed: split in the middle of the edge that is bent most,
+   until none is bent by a quarter of a sample. */
+  void DrawBent(const PictureBody& body, const std::array<Corner, 3>& corners, int splits,
+                std::uint32_t number, const std::array<float, 3>& color) {
+    constexpr double kStraight = 0.25;  // [samples]: a choice.
+    double most = kStraight;
+    std::size_t from = corners.size();
+    Corner middle{};
+    for (std::size_t k = 0; k < corners.size() && splits > 0; ++k) {
+      const Corner& a = corners[k];
+      const Corner& b = corners[(k + 1) % corners.size()];
+      const Vec3 p_B = 0.5 * (a.p_B + b.p_B);
+      const Place place = PlaceOf(body, p_B);
+      const double bow = (place.p - 0.5 * (a.place.p + b.place.p)).head<2>().norm();
+      if (bow > most) {
+        most = bow;
+        from = k;
+        middle = {p_B, place};
+      }
+    }
+    if (from == corners.size()) {
+      DrawTriangle({&corners[0].place, &corners[1].place, &corners[2].place}, number, color);
+      return;
+    }
+    const Corner& u = corners[from];
+    const Corner& v = corners[(from + 1) % corners.size()];
+    const Corner& w = corners[(from + 2) % corners.size()];
+    DrawBent(body, {u, middle, w}, splits - 1, number, color);
+    DrawBent(body, {middle, v, w}, splits - 1, number, color);
   }
 
   void DrawTriangle(const std::array<const Place*, 3>& corners, std::uint32_t occurrence,

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ struct PictureBody {
   std::optional<product::Color> color;      ///< None: those of the part and its faces.
   std::vector<std::uint32_t> marked_faces;  ///< Sorted. Red, also through what hides them.
   std::size_t mark_group{0};                ///< Its marks count in this group; below kMarkGroups.
+  /** Where a point of the part goes, in B; null: it is as drawn. */
+  std::function<Vec3(const Vec3& p_B)> deform{};
 };
 
 /** The box in W around the boxes of bodies. */

@@ -188,6 +188,11 @@ Result<Summary> Summarise(record::Reader* reader) {
   summary.holds = std::move(*holds);
   if (summary.product) {
     DrawFits(&summary);
+    auto given = FindGivenParts(reader, sound, *summary.product);
+    if (!given) {
+      return Unexpected(given.error());
+    }
+    summary.given = std::move(*given);
   }
   return summary;
 }

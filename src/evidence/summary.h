@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "evidence/given_parts.h"
 #include "evidence/holds.h"
 #include "product/product.h"
 #include "record/reader.h"
@@ -57,6 +58,7 @@ struct Summary {
   std::vector<HandSummary> hands;
   std::vector<record::Event> incidents;  ///< Events of safety, device, effort and flight.
   std::vector<FitSummary> fits;
+  std::vector<GivenPart> given;  ///< Parts that gave, and how far.
   std::optional<product::Product> product;  ///< None in records of before schema 3.
 };
 

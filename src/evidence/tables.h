@@ -14,7 +14,7 @@ Result<void> WriteCsv(record::Reader* reader, const Selection& selection,
                       const std::filesystem::path& file);
 
 /** `meta`, `parts` (paths by id), `columns` with units, `ticks` as rows (null where a number is not
- finite), `events`. */
+ finite), `events`; `gives`, where parts gave in the span: how far each did at most. */
 Result<void> WriteJson(record::Reader* reader, const Selection& selection,
                        const std::filesystem::path& file);
 

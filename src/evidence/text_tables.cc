@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "evidence/given_parts.h"
 #include "evidence/output_file.h"
 #include "evidence/tables.h"
+#include "session/recorded_model.h"
 
 namespace hvas::evidence {
 namespace {
@@ -25,7 +27,29 @@ Json MakeMetaJson(const record::Reader& reader) {
   return json;
 }
 
-Result<std::string> MakeHead(record::Reader* reader) {
+/** Parts that gave in the span: how far at most; empty where none did, or the record has no product.
+ */
+Result<Json> MakeGives(record::Reader* reader, const record::Reader::Span& span) {
+  const auto product = session::FindProduct(reader);
+  Json list = Json::array();
+  if (!product || !*product) {
+    return list;  // The export of the ticks needs none.
+  }
+  const auto given = FindGivenParts(reader, span, **product);
+  if (!given) {
+    return Unexpected(given.error());
+  }
+  for (const GivenPart& part : *given) {
+    list.push_back({{"occurrence", part.occurrence},
+                    {"moved", part.moved},
+                    {"kind", simulation::ToString(part.kind)},
+                    {"largest_m", part.largest},
+                    {"text", Describe(part)}});
+  }
+  return list;
+}
+
+Result<std::string> MakeHead(record::Reader* reader, const record::Reader::Span& span) {
   auto events = reader->ReadEvents();
   if (!events) {
     return Unexpected(events.error());
@@ -45,9 +69,16 @@ Result<std::string> MakeHead(record::Reader* reader) {
     item["details"] = details.is_discarded() ? Json(event.json) : std::move(details);
     list.push_back(std::move(item));
   }
-  const Json head{{"format", "hvas-session-1"},    {"complete", reader->is_complete()},
-                  {"meta", MakeMetaJson(*reader)}, {"parts", ReadPaths(*reader)},
-                  {"events", std::move(list)},     {"columns", std::move(columns)}};
+  auto gives = MakeGives(reader, span);
+  if (!gives) {
+    return Unexpected(gives.error());
+  }
+  Json head{{"format", "hvas-session-1"},    {"complete", reader->is_complete()},
+            {"meta", MakeMetaJson(*reader)}, {"parts", ReadPaths(*reader)},
+            {"events", std::move(list)},     {"columns", std::move(columns)}};
+  if (!gives->empty()) {
+    head["gives"] = std::move(*gives);
+  }
   return head.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -83,7 +114,7 @@ Result<void> WriteJson(record::Reader* reader, const Selection& selection,
   if (!output) {
     return Unexpected(output.error());
   }
-  auto head = MakeHead(reader);
+  auto head = MakeHead(reader, selection.span);
   if (!head) {
     return Unexpected(head.error());
   }

@@ -11,6 +11,7 @@
 #include "product/accessories.h"
 #include "product/product_io.h"
 #include "session/command_json.h"
+#include "session/deformable_json.h"
 #include "simulation/extraction.h"
 
 namespace hvas::session {
@@ -188,6 +189,7 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
   const std::string text = json.dump();
   const auto bytes = std::as_bytes(std::span(text));
   recorder->AddAttachment({kModelAttachment, {bytes.begin(), bytes.end()}});
+  AttachDeformables(model.deformables, recorder);
 }
 
 Result<product::Product> LoadProduct(record::Reader* reader) {

@@ -87,17 +87,41 @@ Pose FindApart(const Model& model, const WorkStep& step, OccurrenceId id, double
   return step.way.back() * leader.Inverse() * X_WB;
 }
 
+/** How far each part is deformed in a step: springs that nothing presses yet are longer than drawn.
+ */
+std::vector<double> CalcStepDeformations(const Model& model, const WorkStep& step, double apart) {
+  std::vector<Pose> X_WB;
+  for (const simulation::Body& body : model.bodies) {
+    X_WB.push_back(body.X_WB_goal);
+  }
+  std::vector<bool> present(model.bodies.size(), false);
+  for (const OccurrenceId id : step.there) {
+    present[id.index()] = true;
+  }
+  for (const OccurrenceId id : step.coming) {
+    present[id.index()] = true;
+    X_WB[id.index()] = FindApart(model, step, id, apart);
+  }
+  return simulation::CalcDeformations(*model.product, model.deformables, X_WB, &present);
+}
+
 StepScene MakeScene(const Model& model, const WorkStep& step) {
   StepScene scene;
   const Pose X_UW(TurnUp(step.up_W), Vec3::Zero());
+  const double apart = step.there.empty() ? 0 : CalcApart(model, step);
+  const std::vector<double> amounts = CalcStepDeformations(model, step, apart);
+  const auto map = [&](OccurrenceId id) {
+    return simulation::MakePointMap(model.deformables, amounts, id);
+  };
   for (const OccurrenceId id : step.there) {
     const product::Part& part = model.product->part_of(id);
     scene.there.push_back({&part, X_UW * model.bodies[id.index()].X_WB_goal, Pale(part.color), {}});
+    scene.there.back().deform = map(id);
   }
-  const double apart = step.there.empty() ? 0 : CalcApart(model, step);
   for (const OccurrenceId id : step.coming) {
     scene.coming.push_back(
         {&model.product->part_of(id), X_UW * FindApart(model, step, id, apart), kComing, {}});
+    scene.coming.back().deform = map(id);
   }
   return scene;
 }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "simulation/model.h"
+#include <utility>
 
 namespace hvas::simulation {
 namespace {
@@ -100,10 +99,10 @@ struct Travel {
   bool is_on_way{false};
 };
 
-Travel CalcTravel(const Model& model, const DeformationSource& source,
+Travel CalcTravel(const product::Product& product, const DeformationSource& source,
                   std::span<const spatial::Pose> X_WB) {
-  const spatial::Pose& X_WA_goal = model.bodies[source.against.index()].X_WB_goal;
-  const spatial::Pose& X_WB_goal = model.bodies[source.moved.index()].X_WB_goal;
+  const spatial::Pose& X_WA_goal = product.occurrences[source.against.index()].X_WB;
+  const spatial::Pose& X_WB_goal = product.occurrences[source.moved.index()].X_WB;
   const spatial::Pose X_AB = X_WB[source.against.index()].Inverse() * X_WB[source.moved.index()];
   const spatial::Pose X_WB_seen = X_WA_goal * X_AB;
   const Vec3 off_W = X_WB_seen.p() - X_WB_goal.p();
@@ -115,7 +114,7 @@ Travel CalcTravel(const Model& model, const DeformationSource& source,
   return {along, is_near && along > -reach};
 }
 
-double CalcGiven(const DeformationSource& source, double along) {
+double CalcGivenAt(const DeformationSource& source, double along) {
   const double given =
       std::min(source.curve->CalcGiven(along), std::max(source.widest, 0.0));
   if (source.own.size() < 2 || !(source.widest > 0)) {
@@ -180,43 +179,65 @@ Vec3 Deform(const DeformationForm& form, double amount, const Vec3& p_B) {
   return p_B;
 }
 
-std::vector<double> CalcDeformations(const Model& model, std::span<const spatial::Pose> X_WB,
+double CalcGiven(const product::Product& product, const DeformationSource& source,
+                 std::span<const spatial::Pose> X_WB) {
+  const Travel travel = CalcTravel(product, source, X_WB);
+  return travel.is_on_way && source.curve != nullptr ? CalcGivenAt(source, travel.along) : 0;
+}
+
+std::vector<double> CalcDeformations(const product::Product& product,
+                                     const std::vector<Deformable>& deformables,
+                                     std::span<const spatial::Pose> X_WB,
                                      const std::vector<bool>* present) {
-  const std::vector<Deformable>& deformables = model.deformables;
-  const auto is_there = [present](product::OccurrenceId id) {
-    return present == nullptr || (*present)[id.index()];
+  const auto is_there = [present](const DeformationSource& source) {
+    return present == nullptr ||
+           ((*present)[source.moved.index()] && (*present)[source.against.index()]);
   };
-  std::vector<double> amounts(deformables.size(), 0.0);
-  for (std::size_t i = 0; i < deformables.size(); ++i) {
-    const Deformable& part = deformables[i];
-    double given = 0;
-    double carried = 0;
-    for (const std::size_t below : part.below) {
-      carried += amounts[below];
-    }
-    for (const DeformationSource& source : part.sources) {
-      if (!is_there(source.moved) || !is_there(source.against)) {
-        continue;
+  std::vector<double> amounts;
+  for (const Deformable& part : deformables) {
+    double amount = part.free;
+    if (part.form.kind == DeformationKind::kShift) {
+      double carried = 0;
+      for (const std::size_t below : part.below) {
+        carried += amounts[below];
       }
-      const Travel travel = CalcTravel(model, source, X_WB);
-      if (!travel.is_on_way) {
-        continue;
+      const DeformationSource& place = part.sources.front();
+      const Travel travel = CalcTravel(product, place, X_WB);
+      // What comes down on a stack that is longer than drawn rests on it before its place.
+      if (travel.is_on_way && is_there(place)) {
+        amount = std::max(std::min(carried, 0.0), carried - std::max(0.0, travel.along));
       }
-      if (source.curve != nullptr) {
-        given = std::max(given, CalcGiven(source, travel.along));
-      } else {
-        // What comes down on a stack that is longer than drawn rests on it before its place.
-        amounts[i] = std::max(std::min(carried, 0.0), carried - std::max(0.0, travel.along));
+    } else {
+      double given = 0;
+      for (const DeformationSource& source : part.sources) {
+        given = std::max(given, is_there(source) ? CalcGiven(product, source, X_WB) : 0.0);
       }
+      amount += part.sign * given;
     }
-    if (part.form.kind != DeformationKind::kShift) {
-      amounts[i] = part.free + part.sign * given;
-    }
-    if (std::abs(amounts[i]) < kLeastDrawn) {
-      amounts[i] = 0;
-    }
+    amounts.push_back(std::abs(amount) < kLeastDrawn ? 0.0 : amount);
   }
   return amounts;
+}
+
+std::function<Vec3(const Vec3& p_B)> MakePointMap(const std::vector<Deformable>& deformables,
+                                                  const std::vector<double>& amounts,
+                                                  product::OccurrenceId id) {
+  std::vector<std::pair<const DeformationForm*, double>> own;
+  for (std::size_t i = 0; i < deformables.size(); ++i) {
+    if (deformables[i].occurrence == id && amounts[i] != 0) {
+      own.emplace_back(&deformables[i].form, amounts[i]);
+    }
+  }
+  if (own.empty()) {
+    return {};
+  }
+  return [own = std::move(own)](const Vec3& p_B) {
+    Vec3 p = p_B;
+    for (const auto& [form, amount] : own) {
+      p = Deform(*form, amount, p);
+    }
+    return p;
+  };
 }
 
 }  // namespace hvas::simulation

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -16,7 +17,6 @@
  the poses that they have. */
 namespace hvas::simulation {
 
-struct Model;
 struct PressedPair;
 struct Sequence;
 
@@ -111,13 +111,26 @@ struct Deformable {
                                                       const Sequence& sequence,
                                                       const std::vector<PressedPair>& presses);
 
-/** How far each part is deformed [m], by the index in `Model::deformables`; what nothing reaches has
- its free form.
- @param X_WB  Poses by occurrence.
+/** How far what a source deforms gives now, or is pressed together [m]; 0 where the part that moves
+ is not on its way. For a stack: this part of it alone.
+ @param product  Has the places of the parts, as drawn. @param X_WB  Poses by occurrence. */
+[[nodiscard]] double CalcGiven(const product::Product& product, const DeformationSource& source,
+                               std::span<const spatial::Pose> X_WB);
+
+/** How far each part is deformed [m], by the index in `deformables`; what nothing reaches has its
+ free form.
+ @param product  Has the places of the parts, as drawn. @param X_WB  Poses by occurrence.
  @param present  Whether a part is there, by occurrence; null: all are. */
-[[nodiscard]] std::vector<double> CalcDeformations(const Model& model,
+[[nodiscard]] std::vector<double> CalcDeformations(const product::Product& product,
+                                                   const std::vector<Deformable>& deformables,
                                                    std::span<const spatial::Pose> X_WB,
                                                    const std::vector<bool>* present = nullptr);
+
+/** Where the points of a part go, in its frame B, with all that deforms it; null where nothing does.
+ @param deformables  Outlive the result. @param amounts  As CalcDeformations() gives them. */
+[[nodiscard]] std::function<Vec3(const Vec3& p_B)> MakePointMap(
+    const std::vector<Deformable>& deformables, const std::vector<double>& amounts,
+    product::OccurrenceId id);
 
 /** A smaller amount is not drawn [m]: no more than a display resolves. A choice. */
 inline constexpr double kLeastDrawn = 0.5e-6;

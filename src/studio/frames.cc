@@ -66,6 +66,25 @@ std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
   return moved;
 }
 
+/** Lists the deformations that look different from what is known, at first all, and makes them known.
+ */
+std::vector<protocol::Deformation> ListDeformed(const std::vector<double>& amounts,
+                                                std::vector<double>* known) {
+  constexpr double kLeastChange = 1e-6;  // [m]: less is not seen. A choice.
+  std::vector<protocol::Deformation> changed;
+  const bool is_first = known->size() != amounts.size();
+  known->resize(amounts.size(), 0.0);
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    double& shown = (*known)[i];
+    const bool is_over = amounts[i] == 0 && shown != 0;
+    if (is_first || is_over || std::abs(amounts[i] - shown) > kLeastChange) {
+      shown = amounts[i];
+      changed.push_back({static_cast<std::uint32_t>(i), static_cast<float>(amounts[i])});
+    }
+  }
+  return changed;
+}
+
 /** Makes histogram counts between edges; the last bin has everything above the last edge. */
 Json CountBetween(const LatencyHistogram& histogram, std::span<const int> edges_us) {
   constexpr std::int64_t kNsPerUs = 1000;  // A definition.
@@ -91,9 +110,9 @@ Json MakeHistograms(const simulation::LoopStatus& status) {
 }  // namespace
 
 std::string MakeFrames(const LiveFrame& live, std::int64_t t_ns, std::uint32_t seq,
-                       std::vector<spatial::Pose>* known) {
+                       ShownState* known) {
   const simulation::Frame& frame = live.frame;
-  const std::vector<protocol::BodyPose> moved = ListMoved(frame, known);
+  const std::vector<protocol::BodyPose> moved = ListMoved(frame, &known->X_WB);
   std::vector<protocol::HandState> hands;
   std::vector<protocol::ContactPoint> contacts;
   for (std::size_t i = 0; i < frame.ticks.size(); ++i) {
@@ -110,6 +129,10 @@ std::string MakeFrames(const LiveFrame& live, std::int64_t t_ns, std::uint32_t s
   AppendFrame<protocol::BodyPose>(moved, seq, live.epoch, t_ns, &bytes);
   AppendFrame<protocol::HandState>(hands, seq, live.epoch, t_ns, &bytes);
   AppendFrame<protocol::ContactPoint>(contacts, seq, live.epoch, t_ns, &bytes);
+  const auto deformed = ListDeformed(live.deformations, &known->deformations);
+  if (!deformed.empty()) {
+    AppendFrame<protocol::Deformation>(deformed, seq, live.epoch, t_ns, &bytes);
+  }
   return bytes;
 }
 

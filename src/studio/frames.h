@@ -10,12 +10,12 @@
 
 namespace hvas::studio {
 
-/** Makes the binary message with all poses that have changed since the client's last one; empty
- when none has.
+/** Makes the binary message with all poses and deformations that have changed since the client's last
+ one; empty when none has.
  @param t_ns  Time in the header of its frames [ns].
- @param[in,out] known  Poses X_WB that the client has, by occurrence; empty: none. */
+ @param[in,out] known  What the client has. */
 [[nodiscard]] std::string MakeFrames(const LiveFrame& frame, std::int64_t t_ns, std::uint32_t seq,
-                                     std::vector<spatial::Pose>* known);
+                                     ShownState* known);
 
 /** Target pose X_WH of an input. @pre ReadClientFrames has checked it. */
 [[nodiscard]] spatial::Pose PoseOf(const protocol::HandInput& input);

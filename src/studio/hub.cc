@@ -336,10 +336,10 @@ void Hub::PublishFrame() {
 void Hub::SendFrame(const LiveFrame& frame, Client* client) {
   if (client->epoch != frame.epoch) {
     client->epoch = frame.epoch;
-    client->X_WB.clear();
+    client->shown = {};
   }
   std::string bytes = MakeFrames(IsShielded(client->role) ? RemoveTrueForces(frame) : frame,
-                                 frame.clock_ns, client->sent_seq + 1, &client->X_WB);
+                                 frame.clock_ns, client->sent_seq + 1, &client->shown);
   if (bytes.empty()) {
     return;
   }

@@ -41,6 +41,13 @@ struct LiveFrame {
   PeakForces peak_felt{};    ///< Largest since the previous frame, by hand [N].
   std::array<double, haptics::kMaxHands>
       hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
+  std::vector<double> deformations;  ///< Amounts, by the index in Model::deformables [m].
+};
+
+/** What a client has been shown. */
+struct ShownState {
+  std::vector<spatial::Pose> X_WB;  ///< By occurrence; empty: none.
+  std::vector<double> deformations;  ///< As in LiveFrame; what is missing is not deformed [m].
 };
 
 }  // namespace hvas::studio

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "fits/iso286.h"
 #include "product/names.h"
+#include "session/deformable_json.h"
 #include "studio/event_json.h"
 
 namespace hvas::studio {
@@ -235,6 +236,7 @@ Json MakeSceneJson(const OpenScene& scene, const LiveState& state) {
           {"occurrences", OccurrencesOf(model, state)},
           {"mates", MatesOf(model)},
           {"steps", StepsOf(model)},
+          {"deformables", session::MakeFormsJson(model.deformables)},
           {"left_out", LeftOutOf(model)},
           {"pending", simulation::CountPending(model)},
           {"diagnostics", DiagnosticsOf(scene.diagnostics)}};

@@ -264,6 +264,25 @@ std::string MakeFits(const Summary& summary) {
                     Escape(MetaOf(summary, "seed")));
 }
 
+/** The parts that gave on the way of one; empty where none did. */
+std::string MakeGiven(const Summary& summary) {
+  if (summary.given.empty()) {
+    return {};
+  }
+  std::string html =
+      "<h2>Parts that gave</h2><div class=\"scroll\"><table><thead><tr><th>Part</th>"
+      "<th class=\"l\">How far</th><th class=\"l\">On the way of</th></tr></thead><tbody>";
+  for (const evidence::GivenPart& part : summary.given) {
+    html += fmt::format("<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td></tr>",
+                        Escape(NameOf(summary, part.occurrence)), evidence::Describe(part),
+                        part.moved == part.occurrence ? "itself"
+                                                      : Escape(NameOf(summary, part.moved)));
+  }
+  return html +
+         "</tbody></table></div><p><small>The furthest in the session, by the poses of its ticks."
+         "</small></p>";
+}
+
 /** What contact left out for lack of room; empty where it left out nothing. */
 std::string MakeContactLimits(const Summary& summary) {
   std::int64_t truncated = 0;
@@ -376,7 +395,7 @@ std::string MakeReportPage(const Summary& summary, const ReportedLeftOut& left_o
   return pages::MakeHtmlPage(MetaOf(summary, "product") + ": assembly report",
                              MakeHead(summary, left_out.count) + MakeProductPicture(summary) +
                                  left_out.section + MakeSequence(summary) + MakeWays(summary) +
-                                 MakeForces(summary) + MakeFits(summary) + MakeLoops(summary) +
+                                 MakeForces(summary) + MakeFits(summary) + MakeGiven(summary) + MakeLoops(summary) +
                                  MakeIncidents(summary) + MakeSource(summary),
                              kStyle);
 }

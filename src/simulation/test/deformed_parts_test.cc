@@ -46,7 +46,7 @@ std::vector<double> AmountsAt(const Model& model, OccurrenceId id, double travel
   const SequenceStep* step = FindInsertion(model.sequence, id);
   Pose& X_WB = poses[id.index()];
   X_WB = Pose(X_WB.q(), X_WB.p() + travel * step->extraction_W + aside_W);
-  return CalcDeformations(model, poses);
+  return CalcDeformations(*model.product, model.deformables, poses);
 }
 
 /** A cylinder, a coil spring in it, and a piston on the spring. */
@@ -130,10 +130,10 @@ TEST(DeformedParts, ASpringIsDrawnLongerUntilItIsPressed) {
   for (Pose& X_WB : poses) {
     X_WB = away * X_WB;
   }
-  EXPECT_EQ(CalcDeformations(*model, poses)[0], 0);
+  EXPECT_EQ(CalcDeformations(*model->product, model->deformables, poses)[0], 0);
   // A piston that is not there presses nothing.
   const std::vector<bool> present{true, true, false};
-  EXPECT_NEAR(CalcDeformations(*model, PosesInPlace(*model), &present)[0], 6e-3, 1e-9);
+  EXPECT_NEAR(CalcDeformations(*model->product, model->deformables, PosesInPlace(*model), &present)[0], 6e-3, 1e-9);
 }
 
 TEST(DeformedParts, TheUpperOneOfTwoGasketsLiesOnTheLowerOne) {
@@ -155,7 +155,7 @@ TEST(DeformedParts, TheUpperOneOfTwoGasketsLiesOnTheLowerOne) {
   poses[lid.index()] = Pose(Vec3(0, 0, 1));
   for (const double before : {0.05e-3, 0.3e-3}) {
     poses[2] = Pose(Vec3(0, 0, 22e-3 + before));
-    const auto amounts = CalcDeformations(*model, poses);
+    const auto amounts = CalcDeformations(*model->product, model->deformables, poses);
     for (std::size_t i = 0; i < 3; ++i) {
       if (model->deformables[i].form.kind == DeformationKind::kShift) {
         EXPECT_NEAR(amounts[i], std::max(0.0, 0.2e-3 - before), 1e-9);

@@ -10,6 +10,7 @@ import { itemCount, splitFrames } from "./decoder";
 import {
   BodyPoseSize,
   ContactPointSize,
+  DeformationSize,
   FrameKind,
   HandStateSize,
   readContactPoint,
@@ -21,6 +22,7 @@ import {
 export const kMaxOccurrences = 16384;
 export const kMaxHands = 8;
 export const kMaxContacts = 128;
+export const kMaxDeformations = 4096;
 export const kSampleSlots = 2048;
 /** Of a sample: hand, time [s], then what `sampleOf` says. */
 export const kSampleFloats = 16;
@@ -41,6 +43,7 @@ const Control = {
   contacts: 6,
   samples: 7,
   generation: 8,
+  deformations: 9,
   count: 16,
 } as const;
 const Clock = { server: 0, received: 1, offset: 2, count: 4 } as const;
@@ -48,14 +51,11 @@ const Clock = { server: 0, received: 1, offset: 2, count: 4 } as const;
 const kClockAt = Control.count * 4;
 const kHandsAt = kClockAt + Clock.count * 8;
 const kContactsAt = kHandsAt + kMaxHands * HandStateSize;
-const kSamplesAt = align8(kContactsAt + kMaxContacts * ContactPointSize);
+const kSamplesAt = (kContactsAt + kMaxContacts * ContactPointSize + 7) & ~7;
 const kPosesAt = kSamplesAt + kSampleSlots * kSampleFloats * 4;
 const kVersionsAt = kPosesAt + kMaxOccurrences * kPoseFloats * 4;
-const kTotal = kVersionsAt + kMaxOccurrences * 4;
-
-function align8(n: number): number {
-  return (n + 7) & ~7;
-}
+const kAmountsAt = kVersionsAt + kMaxOccurrences * 4;
+const kTotal = kAmountsAt + kMaxDeformations * 4;
 
 /** Milliseconds of a clock that page and worker share. */
 export function nowMs(): number {
@@ -99,6 +99,7 @@ export class FrameStore {
   private readonly samples: Float32Array;
   private readonly poses: Float32Array;
   private readonly versions: Int32Array;
+  private readonly amounts: Float32Array;
 
   constructor(buffer?: StoreBuffer) {
     this.buffer = buffer ?? new ArrayBuffer(kTotal);
@@ -109,6 +110,7 @@ export class FrameStore {
     this.samples = new Float32Array(this.buffer, kSamplesAt, kSampleSlots * kSampleFloats);
     this.poses = new Float32Array(this.buffer, kPosesAt, kMaxOccurrences * kPoseFloats);
     this.versions = new Int32Array(this.buffer, kVersionsAt, kMaxOccurrences);
+    this.amounts = new Float32Array(this.buffer, kAmountsAt, kMaxDeformations);
   }
 
   static makeShared(): FrameStore {
@@ -130,6 +132,16 @@ export class FrameStore {
   /** Grows whenever a pose has changed. */
   get generation(): number {
     return this.at(Control.generation);
+  }
+
+  /** Grows whenever a part has been deformed by another amount. */
+  get deformationGeneration(): number {
+    return this.at(Control.deformations);
+  }
+
+  /** By how much one of the scene's deformables is deformed [m]. */
+  readDeformation(index: number): number {
+    return this.amounts[index] ?? 0;
   }
 
   /** Samples written so far; the last kSampleSlots of them can be read. */
@@ -161,6 +173,8 @@ export class FrameStore {
       } else if (header.kind === FrameKind.Contacts) {
         hasContacts = true;
         this.takeContacts(source, at, itemCount(header, ContactPointSize));
+      } else if (header.kind === FrameKind.Deformations) {
+        this.takeDeformations(source, at, itemCount(header, DeformationSize));
       }
     }
     if (hasHands && !hasContacts) {
@@ -231,6 +245,8 @@ export class FrameStore {
     this.control[Control.hands] = 0;
     this.control[Control.contacts] = 0;
     this.versions.fill(0);
+    this.amounts.fill(0);
+    Atomics.add(this.control, Control.deformations, 1);
   }
 
   /** The least difference seen between the clocks is the one of a frame that did not wait. It may creep up slowly, for
@@ -265,6 +281,16 @@ export class FrameStore {
     if (count > 0) {
       Atomics.add(this.control, Control.generation, 1);
     }
+  }
+
+  private takeDeformations(source: DataView, at: number, count: number): void {
+    for (let k = 0; k < count; k++) {
+      const index = source.getUint32(at + k * DeformationSize, true);
+      if (index < kMaxDeformations) {
+        this.amounts[index] = source.getFloat32(at + k * DeformationSize + 4, true);
+      }
+    }
+    Atomics.add(this.control, Control.deformations, 1);
   }
 
   private takeHands(source: DataView, at: number, count: number): void {

@@ -8,23 +8,26 @@
 
 import { itemCount, joinBytes, makeFrame, walkFrames } from "./decoder";
 import { FrameStore, nowMs } from "./frame_store";
-import { BodyPoseSize, FrameKind, HandStateSize, HeaderSize, readHandState, type HandState } from "./frames";
+import { BodyPoseSize, DeformationSize, FrameKind, HandStateSize, HeaderSize, readHandState, type HandState } from "./frames";
 
 const kMomentsPerKey = 128;
 const kSeqAt = 12;
 const kEpochAt = 16;
 
-/** What is known before a moment: a pose for each part, and the hands and contacts that were told last. */
+/** What is known before a moment: a pose for each part, how far what gives is deformed, and the hands and contacts that
+ were told last. */
 class Known {
   private readonly poses = new Map<number, Uint8Array>();
+  private readonly deformations = new Map<number, Uint8Array>();
   private hands: Uint8Array | null = null;
   private contacts: Uint8Array | null = null;
 
   takePoses(source: DataView, at: number, count: number): void {
-    for (let k = 0; k < count; k++) {
-      const from = at + k * BodyPoseSize;
-      this.poses.set(source.getUint32(from, true), bytesOf(source, from, BodyPoseSize));
-    }
+    takeItems(source, at, count, BodyPoseSize, this.poses);
+  }
+
+  takeDeformations(source: DataView, at: number, count: number): void {
+    takeItems(source, at, count, DeformationSize, this.deformations);
   }
 
   takeHands(frame: Uint8Array): void {
@@ -38,10 +41,22 @@ class Known {
 
   /** All of it as one message. */
   makeKey(epoch: number, t_ns: bigint): ArrayBuffer {
-    const poses = makeFrame(FrameKind.Poses, epoch, this.poses.size, BodyPoseSize, t_ns);
-    const body = new Uint8Array(poses.buffer);
-    [...this.poses.values()].forEach((pose, k) => body.set(pose, HeaderSize + k * BodyPoseSize));
-    return joinBytes([body, this.hands, this.contacts].filter((piece) => piece !== null));
+    const join = (kind: number, size: number, items: ReadonlyMap<number, Uint8Array>): Uint8Array => {
+      const frame = new Uint8Array(makeFrame(kind, epoch, items.size, size, t_ns).buffer);
+      [...items.values()].forEach((item, k) => frame.set(item, HeaderSize + k * size));
+      return frame;
+    };
+    const poses = join(FrameKind.Poses, BodyPoseSize, this.poses);
+    const deformations = join(FrameKind.Deformations, DeformationSize, this.deformations);
+    return joinBytes([poses, deformations, this.hands, this.contacts].filter((piece) => piece !== null));
+  }
+}
+
+/** Keeps the newest item of each index, which is the first field of an item. */
+function takeItems(source: DataView, at: number, count: number, size: number, to: Map<number, Uint8Array>): void {
+  for (let k = 0; k < count; k++) {
+    const from = at + k * size;
+    to.set(source.getUint32(from, true), bytesOf(source, from, size));
   }
 }
 
@@ -84,6 +99,8 @@ export class RecordedFrames {
       const timeS = Number(header.t_ns) / 1e9;
       if (header.kind === FrameKind.Poses) {
         known.takePoses(view, at, itemCount(header, BodyPoseSize));
+      } else if (header.kind === FrameKind.Deformations) {
+        known.takeDeformations(view, at, itemCount(header, DeformationSize));
       } else if (header.kind === FrameKind.Hands) {
         known.takeHands(bytesOf(view, start, header.size));
         for (let k = 0; k < itemCount(header, HandStateSize); k++) {

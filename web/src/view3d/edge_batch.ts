@@ -107,6 +107,18 @@ export class EdgeBatch {
     geometry.setDrawRange(0, at);
   }
 
+  /** Takes the edges of a part whose form has changed; there are as many as before. */
+  reshape(instance: number, edges: Float32Array): void {
+    const positions = this.object.geometry.getAttribute("position");
+    let corner = this.starts[instance] ?? 0;
+    for (let k = 0; k < edges.length; k += kEdgeFloats) {
+      for (const at of [k, k + 3]) {
+        positions.setXYZ(corner++, edges[at] ?? 0, edges[at + 1] ?? 0, edges[at + 2] ?? 0);
+      }
+    }
+    positions.needsUpdate = true;
+  }
+
   setInk(ink: Color, marked: Color): void {
     (this.object.material.uniforms["ink"]!.value as Color).copy(ink);
     (this.object.material.uniforms["markedInk"]!.value as Color).copy(marked);

@@ -45,6 +45,14 @@ export class PartShape {
     return this.edgeLines;
   }
 
+  /** Its positions and edges are others from now on. */
+  changeForm(): void {
+    this.geometry.getAttribute("position").needsUpdate = true;
+    this.geometry.computeBoundingBox();
+    this.geometry.computeBoundingSphere();
+    this.bvh = null;
+  }
+
   /** @param ray  In B. */
   raycast(ray: Ray): PartHit | null {
     // Built when it is first asked for: most parts are never pointed at.

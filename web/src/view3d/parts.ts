@@ -194,6 +194,16 @@ export class Parts {
     this.setShadow(entry);
   }
 
+  /** Draws a part as its shape is by now. */
+  reshape(occurrence: number): void {
+    const entry = this.byOccurrence.get(occurrence);
+    if (entry !== undefined) {
+      this.solid.setGeometryAt(this.geometries.get(entry.shape)!.fine, entry.shape.geometry);
+      this.ghost?.setGeometryAt(this.ghost.getGeometryIdAt(entry.instance), entry.shape.geometry);
+      this.edges?.reshape(entry.instance, entry.shape.edges);
+    }
+  }
+
   setLook(occurrence: number, look: PartLook): void {
     const entry = this.byOccurrence.get(occurrence);
     if (entry !== undefined) {

@@ -11,6 +11,7 @@ import type { ViewState } from "../model/view_state";
 import { kMaxHands, type FrameStore, type LiveState } from "../protocol/frame_store";
 import { kNone, type HandState } from "../protocol/frames";
 import type { Occurrence, Scene, Step } from "../protocol/messages";
+import { DeformedParts } from "./deformed_parts";
 import { ArrowScale, FeelLayer } from "./feel_layer";
 import { ExplodeLayer } from "./explode_layer";
 import { boxesBut, centreOfMass, cornersOf, ghostsOf, goalBoxes, kHeadroom, withHeadroom } from "./goals";
@@ -19,7 +20,7 @@ import { heldWith, posesInHand } from "./held_members";
 import { Lifetime } from "./lifetime";
 import { loadedAs, opensWhole, type Loaded } from "./loaded_as";
 import { MarkLayer } from "./mark_layer";
-import { markedFaces } from "./marked_faces";
+import { markedFaces, shapesOfFaces } from "./marked_faces";
 import type { Palette } from "./palette";
 import { PartLooks } from "./part_looks";
 import { Parts, type PickHit } from "./parts";
@@ -38,6 +39,7 @@ export class SceneView {
   /** Called when a product has been loaded and stands in the view. */
   onLoaded: (loaded: Loaded) => void = () => {};
   private palette: Palette | null = null;
+  private deformed: DeformedParts | null = null;
   private readonly versions = new Map<number, number>();
   private readonly poses = new Map<number, Pose>();
   private readonly seen = new Map<number, Seen>();
@@ -141,6 +143,7 @@ export class SceneView {
     if (frames !== null && isCurrent) {
       this.takePoses(frames);
       this.moveHeld(live, nowMs);
+      this.isDirty = this.deformed?.update(frames, this.parts) || this.isDirty;
     }
     this.isDirty = this.explode.update(this.poses, this.parts) || this.isDirty;
     this.updateFeel(isCurrent ? live : null);
@@ -156,13 +159,14 @@ export class SceneView {
       return this.clear();
     }
     const loaded = loadedAs(scene, this.scene);
-    if (this.parts === null || this.glbUrl !== scene.glb) {
+    if (this.parts === null || this.glbUrl !== scene.glb || this.deformed?.isOf(scene) !== true) {
       const shapes = await this.store.followMeshes(scene.glb_bytes, (tell) => loadShapes(scene.glb, tell));
       if (turn !== this.loadCount) {
         return;
       }
       this.clear();
-      this.parts = new Parts(shapes);
+      this.deformed = new DeformedParts(shapes, scene);
+      this.parts = new Parts(this.deformed.shapes);
       this.root.add(this.parts.root);
       this.glbUrl = scene.glb;
     }
@@ -203,7 +207,7 @@ export class SceneView {
       this.root.remove(this.parts.root);
       this.parts.dispose();
     }
-    this.parts = null;
+    this.parts = this.deformed = null;
     this.scene = null;
     this.glbUrl = "";
     this.poses.clear();
@@ -216,6 +220,7 @@ export class SceneView {
     this.versions.clear();
     this.seen.clear();
     this.extrapolators.clear();
+    this.deformed?.forget();
     this.generation = -1;
   }
 
@@ -294,13 +299,7 @@ export class SceneView {
   }
 
   private markFaces(): void {
-    this.marks.showFaces(
-      markedFaces(this.view, this.scene?.mates ?? []).flatMap(({ occurrence, face }) => {
-        const shape = this.parts?.shapeOf(occurrence);
-        const matrix = this.parts?.matrixOf(occurrence);
-        return shape && matrix ? [{ shape, matrix, face }] : [];
-      }),
-    );
+    this.marks.showFaces(shapesOfFaces(markedFaces(this.view, this.scene?.mates ?? []), this.parts));
     this.isDirty = true;
   }
 
