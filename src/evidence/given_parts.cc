@@ -26,8 +26,8 @@ Result<std::vector<GivenPart>> FindGivenParts(record::Reader* reader,
     for (const DeformationSource& source : part.sources) {
       if (source.curve != nullptr) {
         const double grows = part.sign * (part.form.shares[0] + part.form.shares[1]);
-        parts.push_back({part.occurrence.value(), source.moved.value(), part.form.kind, grows < 0,
-                         0});
+        parts.push_back(
+            {part.occurrence.value(), source.moved.value(), part.form.kind, grows < 0, 0});
         sources.push_back(&source);
       }
     }

@@ -134,8 +134,8 @@ class Canvas {
     return {p_W, ProjectToSamples(p_W)};
   }
 
-  /** Draws a triangle of a part that is deformed: split in the middle of the edge that is bent most,
-   until none is bent by a quarter of a sample. */
+  /** Draws a triangle of a part that is deformed: split in the middle of the edge that is bent
+   most, until none is bent by a quarter of a sample. */
   void DrawBent(const PictureBody& body, const std::array<Corner, 3>& corners, int splits,
                 std::uint32_t number, const std::array<float, 3>& color) {
     constexpr double kStraight = 0.25;  // [samples]: a choice.

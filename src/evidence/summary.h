@@ -58,7 +58,7 @@ struct Summary {
   std::vector<HandSummary> hands;
   std::vector<record::Event> incidents;  ///< Events of safety, device, effort and flight.
   std::vector<FitSummary> fits;
-  std::vector<GivenPart> given;  ///< Parts that gave, and how far.
+  std::vector<GivenPart> given;             ///< Parts that gave, and how far.
   std::optional<product::Product> product;  ///< None in records of before schema 3.
 };
 

@@ -27,7 +27,8 @@ Json MakeMetaJson(const record::Reader& reader) {
   return json;
 }
 
-/** Parts that gave in the span: how far at most; empty where none did, or the record has no product.
+/** Parts that gave in the span: how far at most; empty where none did, or the record has no
+ * product.
  */
 Result<Json> MakeGives(record::Reader* reader, const record::Reader::Span& span) {
   const auto product = session::FindProduct(reader);

@@ -92,8 +92,7 @@ bool TakeOccurrence(const Json& from, const char* key, const product::Product& p
 bool ParseSource(const Json& from, const product::Product& product, DeformationSource* source) {
   bool is_sound = TakeOccurrence(from, "moved", product, &source->moved) &&
                   TakeOccurrence(from, "against", product, &source->against) &&
-                  TakeVector(from, "out", &source->out_W) &&
-                  TakeList(from, "own_m", &source->own);
+                  TakeVector(from, "out", &source->out_W) && TakeList(from, "own_m", &source->own);
   source->widest = NumberOr(from, "widest_m", 0);
   if (FieldOf(from, "given_m") != nullptr) {
     auto curve = std::make_shared<haptics::GivingCurve>();
@@ -120,12 +119,11 @@ bool ParseDeformable(const Json& from, const product::Product& product, std::siz
       is_sound = true;
     }
   }
-  is_sound = is_sound && TakeOccurrence(from, "occurrence", product, &part->occurrence) &&
-             TakeVector(from, "origin_m", &form.origin_B) &&
-             TakeVector(from, "axis", &form.axis_B) && TakeVector(from, "aside", &form.aside_B) &&
-             TakeNumbers(from, "range_m", &form.range) &&
-             TakeNumbers(from, "across_m", &form.across) &&
-             TakeNumbers(from, "shares", &form.shares);
+  is_sound =
+      is_sound && TakeOccurrence(from, "occurrence", product, &part->occurrence) &&
+      TakeVector(from, "origin_m", &form.origin_B) && TakeVector(from, "axis", &form.axis_B) &&
+      TakeVector(from, "aside", &form.aside_B) && TakeNumbers(from, "range_m", &form.range) &&
+      TakeNumbers(from, "across_m", &form.across) && TakeNumbers(from, "shares", &form.shares);
   form.length = NumberOr(from, "length_m", 0);
   part->free = NumberOr(from, "free_m", 0);
   part->sign = NumberOr(from, "sign", 1);

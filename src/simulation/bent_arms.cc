@@ -16,11 +16,12 @@ namespace {
 
 using product::Part;
 
-constexpr double kThickRoot = 2.5;     // Times the thinnest section: the body begins. A choice.
-constexpr int kStations = 240;         // Looks at an arm along the whole part: a choice.
-constexpr int kBisections = 16;        // Of the step between two looks: a choice.
-constexpr double kBesideFar = 0.25;    // Share of the wall from its far side, at most: a choice.
-constexpr double kLeastBeside = 1e-6;  // [m] from the far side of the wall. A choice.
+constexpr double kThickRoot = 2.5;       // Times the thinnest section: the body begins. A choice.
+constexpr int kStations = 240;           // Looks at an arm along the whole part: a choice.
+constexpr int kBisections = 16;          // Of the step between two looks: a choice.
+constexpr double kBesideFar = 0.25;      // Share of the wall from its far side, at most: a choice.
+constexpr double kLeastBeside = 1e-6;    // [m] from the far side of the wall. A choice.
+constexpr int kMostTries = 12;           // Contacts from which an arm is looked for: a choice.
 constexpr double kShareOfDeepest = 0.3;  // A contact that is less deep bends nothing: a choice.
 constexpr double kWeld = 1e-7;           // Corners that are nearer are one [m]. A choice.
 constexpr double kBeyondRoot = 1e-5;     // Share of the length of the arm: a choice.
@@ -263,8 +264,8 @@ void MakeRound(const Vec3& p_B, const Vec3& inward_B, BentArm* arm) {
   const Vec3 across_B = arm->axis_B.cross(arm->aside_B);
   arm->root_B += 0.5 * (arm->range[0] + arm->range[1]) * arm->aside_B +
                  0.5 * (arm->across[0] + arm->across[1]) * across_B;
-  const double outer = 0.5 * std::max(arm->range[1] - arm->range[0],
-                                      arm->across[1] - arm->across[0]);
+  const double outer =
+      0.5 * std::max(arm->range[1] - arm->range[0], arm->across[1] - arm->across[0]);
   // All of it bends, whatever its section is: from the axis to the corners of a square.
   arm->range = {0, std::sqrt(2.0) * outer};
   arm->across = {0, 0};
@@ -293,12 +294,14 @@ std::vector<BentArm> FindBentArms(const product::Product& product, const GivingP
   };
   std::vector<BentArm> arms;
   std::set<std::uint32_t> known;  // Faces of the arms.
+  int tries = 0;
   for (const auto& [distance, face] : order) {
     const MetFace& at = samples.by_face.at(face);
     const contact::Contact& contact = at.contact;
-    if (-distance < kShareOfDeepest * deepest || known.count(face) > 0) {
+    if (-distance < kShareOfDeepest * deepest || known.count(face) > 0 || tries >= kMostTries) {
       continue;
     }
+    ++tries;
     const Vec3 aside_W = contact.nhat_W - contact.nhat_W.dot(way_W) * way_W;
     const Vec3 inward_B = X_BW.q() * (inward_sign * aside_W.normalized());
     const Vec3 p_B = place(contact, at.travelled);
@@ -311,8 +314,8 @@ std::vector<BentArm> FindBentArms(const product::Product& product, const GivingP
       return other.distance < 0 && other.nhat_W.dot(contact.nhat_W) < kOppositeNormals &&
              IsOnArm(*arm, place(other, other_travelled));
     };
-    const bool is_round = std::any_of(
-        samples.by_face.begin(), samples.by_face.end(), [&](const auto& other) {
+    const bool is_round =
+        std::any_of(samples.by_face.begin(), samples.by_face.end(), [&](const auto& other) {
           const MetFace& met = other.second;
           return is_opposite(met.contact, met.travelled) ||
                  is_opposite(met.opposite, met.opposite_travelled);

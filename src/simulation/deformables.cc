@@ -71,14 +71,15 @@ std::optional<Vec3> FindBack(const Part& part, const RingForm& ring) {
     const Vec3 d = p_B - ring.centre_B;
     return std::atan2(d.dot(y_B), d.dot(x_B));
   };
-  constexpr double kSector = 2 * std::numbers::pi / kSectors;
+  constexpr double kSector =  // A definition.
+      2 * std::numbers::pi / kSectors;
   for (const auto& triangle : part.mesh.triangles) {
     const double first = angle_of(part.mesh.vertices[triangle[0]]);
     double low = 0;
     double high = 0;
     for (const std::uint32_t v : triangle) {
-      const double off = std::remainder(angle_of(part.mesh.vertices[v]) - first,
-                                        2 * std::numbers::pi);
+      const double off =
+          std::remainder(angle_of(part.mesh.vertices[v]) - first, 2 * std::numbers::pi);
       low = std::min(low, off);
       high = std::max(high, off);
     }
@@ -267,8 +268,7 @@ class Lister {
       const ElasticPart& elastic = *FindElastic(product_, id);
       const spatial::Pose& X_WB = product_.occurrences[id.index()].X_WB;
       const double sign = (X_WB.q() * elastic.axis_B).dot(to_presser_W) > 0 ? 1 : -1;
-      DeformationForm form =
-          MakePressForm(product_.part_of(id), elastic, sign * elastic.axis_B);
+      DeformationForm form = MakePressForm(product_.part_of(id), elastic, sign * elastic.axis_B);
       DeformationSource source;
       source.moved = pair.moved;
       source.against = pair.against;
@@ -277,8 +277,8 @@ class Lister {
       source.curve = pair.curve;
       source.own = MakeOwnTable(pair, k);
       const std::vector<std::size_t> carried = below;
-      below.push_back(AddPress({id, form, std::max(0.0, elastic.free_size - elastic.length), -1,
-                                {source}, {}}));
+      below.push_back(AddPress(
+          {id, form, std::max(0.0, elastic.free_size - elastic.length), -1, {source}, {}}));
       if (!carried.empty()) {
         form.kind = DeformationKind::kShift;
         DeformationSource place;

@@ -115,8 +115,7 @@ Travel CalcTravel(const product::Product& product, const DeformationSource& sour
 }
 
 double CalcGivenAt(const DeformationSource& source, double along) {
-  const double given =
-      std::min(source.curve->CalcGiven(along), std::max(source.widest, 0.0));
+  const double given = std::min(source.curve->CalcGiven(along), std::max(source.widest, 0.0));
   if (source.own.size() < 2 || !(source.widest > 0)) {
     return std::max(0.0, given);
   }

@@ -55,8 +55,8 @@ struct DeformationForm {
   /** kBend: as `range`, along axis_B x aside_B [m]. */
   std::array<double, 2> across{0, 0};
   /** kFlare: first, 1 outwards and -1 inwards; kHelix: first, 1 where it rises counter-clockwise
-   about the axis, else -1; kRadial, kCone: how far the inner and the outer radius grow, or its edges
-   rise, for each metre of the amount. */
+   about the axis, else -1; kRadial, kCone: how far the inner and the outer radius grow, or its
+   edges rise, for each metre of the amount. */
   std::array<double, 2> shares{1, 1};
 };
 
@@ -71,12 +71,11 @@ struct DeformationForm {
  | kRadial | along the radius, linear between the inner and the outer radius | a choice |
  | kOpen | radius r to r + y, angle from the back by r_m / (r_m + y): round, and as long as it was,
  so the gap opens by 2 pi y | as fits::CalcSpreadStiffness() |
- | kPress | along the axis by the amount times the distance from the end that stays over the length |
- a spring of constant pitch, a block of constant strain |
- | kCone | along the axis, linear between the inner and the outer radius | the disc turns as a rigid
- section: Almen and Laszlo |
- | kHelix | along the axis, linear in the angle from end to end | constant torsion: Wahl |
- | kShift | along the axis by the amount | |
+ | kPress | along the axis by the amount times the distance from the end that stays over the length
+ | a spring of constant pitch, a block of constant strain | | kCone | along the axis, linear between
+ the inner and the outer radius | the disc turns as a rigid section: Almen and Laszlo | | kHelix |
+ along the axis, linear in the angle from end to end | constant torsion: Wahl | | kShift | along the
+ axis by the amount | |
 
  @param amount  kPress: how much longer, kOpen: how much wider in radius; negative: shorter,
  narrower. */
@@ -84,10 +83,10 @@ struct DeformationForm {
 
 /** What deforms a part: another one on its way to its place, or itself on its way. */
 struct DeformationSource {
-  product::OccurrenceId moved;        ///< The part on its way.
-  product::OccurrenceId against;      ///< The part relative to whose place the way counts.
-  Vec3 out_W{Vec3::UnitZ()};          ///< Unit, the way out, with `against` as drawn.
-  double widest{0};                   ///< The furthest that it gives, or is pressed [m].
+  product::OccurrenceId moved;    ///< The part on its way.
+  product::OccurrenceId against;  ///< The part relative to whose place the way counts.
+  Vec3 out_W{Vec3::UnitZ()};      ///< Unit, the way out, with `against` as drawn.
+  double widest{0};               ///< The furthest that it gives, or is pressed [m].
   std::shared_ptr<const haptics::GivingCurve> curve;
   /** How far this part of a stack is pressed, at equal steps of how far all are [m]; empty: it is
    by itself. */
@@ -126,7 +125,8 @@ struct Deformable {
                                                    std::span<const spatial::Pose> X_WB,
                                                    const std::vector<bool>* present = nullptr);
 
-/** Where the points of a part go, in its frame B, with all that deforms it; null where nothing does.
+/** Where the points of a part go, in its frame B, with all that deforms it; null where nothing
+ does.
  @param deformables  Outlive the result. @param amounts  As CalcDeformations() gives them. */
 [[nodiscard]] std::function<Vec3(const Vec3& p_B)> MakePointMap(
     const std::vector<Deformable>& deformables, const std::vector<double>& amounts,

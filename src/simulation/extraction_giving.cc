@@ -208,8 +208,7 @@ GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, bool
           until = travelled;
           samples.travelled = contact.distance < deepest.distance ? travelled : samples.travelled;
           deepest = contact.distance < deepest.distance ? contact : deepest;
-          MetFace& met =
-              samples.by_face[gives_itself ? contact.held_face : contact.scene_face];
+          MetFace& met = samples.by_face[gives_itself ? contact.held_face : contact.scene_face];
           if (met.contact.distance < 0 &&
               met.contact.nhat_W.dot(contact.nhat_W) < kOppositeNormals) {
             met.opposite = contact;
@@ -342,15 +341,14 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
   return std::nullopt;
 }
 
-void Extraction::NoteForm(const GivingSamples& samples, const WhatBends* arm,
-                          const Vec3& direction, GivingPair* give) const {
+void Extraction::NoteForm(const GivingSamples& samples, const WhatBends* arm, const Vec3& direction,
+                          GivingPair* give) const {
   if (give->curve == nullptr) {
     return;
   }
   const product::Part& part = product_.part_of(give->flexible);
   const bool is_own = give->moved == give->flexible;
-  const Vec3 p_W =
-      samples.deepest.p_WC - (is_own ? samples.travelled : 0.0) * direction;
+  const Vec3 p_W = samples.deepest.p_WC - (is_own ? samples.travelled : 0.0) * direction;
   const Vec3 p_B = product_.occurrences[give->flexible.index()].X_WB.Inverse() * p_W;
   if (give->curve->squeezed) {
     const Vec3 size = part.box_B.size();

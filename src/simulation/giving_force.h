@@ -18,9 +18,9 @@ inline constexpr double kOppositeNormals = -0.5;
 
 /** What of a face lies in another part on the way. */
 struct MetFace {
-  contact::Contact contact{};   ///< The deepest.
-  double travelled{0};          ///< Where on the way that is [m].
-  contact::Contact opposite{};  ///< One on the opposite side; its distance is 0 where none is.
+  contact::Contact contact{};    ///< The deepest.
+  double travelled{0};           ///< Where on the way that is [m].
+  contact::Contact opposite{};   ///< One on the opposite side; its distance is 0 where none is.
   double opposite_travelled{0};  ///< [m]
 };
 
@@ -29,9 +29,9 @@ struct GivingSamples {
   double spacing{1};          ///< [m]
   std::vector<double> given;  ///< Overlap at each sample, from the part's place outwards, >= 0 [m].
   double breadth{0};          ///< How broad they overlap, across way and deflection [m].
-  contact::Contact deepest{};  ///< Its distance is 0 where they do not overlap.
-  double travelled{0};         ///< Where on the way that is [m].
-  std::map<std::uint32_t, MetFace> by_face;  ///< By face of the part that gives.
+  contact::Contact deepest{};                ///< Its distance is 0 where they do not overlap.
+  double travelled{0};                       ///< Where on the way that is [m].
+  std::map<std::uint32_t, MetFace> by_face;  ///< Faces of the part that gives.
 };
 
 /** The forces of a pair along the way of the part that is moved; null where no formula is known for

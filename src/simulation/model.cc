@@ -535,8 +535,7 @@ std::shared_ptr<const Model> ChangeOrder(const Model& model, std::vector<Sequenc
   auto changed = std::make_shared<Model>(model);
   changed->sequence.steps = std::move(steps);
   changed->presses = ListAllPresses(*changed->product, changed->sequence);
-  changed->deformables =
-      ListDeformables(*changed->product, changed->sequence, changed->presses);
+  changed->deformables = ListDeformables(*changed->product, changed->sequence, changed->presses);
   RelieveWays(stop, changed.get(), diagnostics);
   return changed;
 }

@@ -98,7 +98,7 @@ struct Model {
   std::vector<ModelMate> mates;                        ///< Indexed by MateId.
   std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
   Sequence sequence;
-  std::vector<PressedPair> presses;  ///< What parts press together on their way, in this order.
+  std::vector<PressedPair> presses;     ///< What parts press together on their way, in this order.
   std::vector<Deformable> deformables;  ///< Parts that are drawn deformed, in this order.
   Accessories accessories;
   double table_z{0};            ///< [m]

@@ -24,7 +24,7 @@ struct PressedPair {
   bool is_radial{false};                     ///< A hole or shaft presses it, all around.
   /** Radial: how far inner and outer radius grow in its place from what they are free [m]. */
   std::array<double, 2> growth{0, 0};
-  std::string source;                        ///< Closed form and source of the force.
+  std::string source;  ///< Closed form and source of the force.
   std::shared_ptr<const haptics::GivingCurve> curve;
 };
 

@@ -80,11 +80,11 @@ struct DrawnOverlap {
 
 /** An arm or a wall of a part that bends aside, in the part's frame B. */
 struct BentArm {
-  Vec3 root_B{Vec3::Zero()};      ///< In the middle of its section at the root.
-  Vec3 axis_B{Vec3::UnitZ()};     ///< Unit, from the root to the tip.
-  Vec3 aside_B{Vec3::UnitX()};    ///< Unit, across the axis: where it bends.
-  double length{0};               ///< From the root to where it is pushed aside [m].
-  std::array<double, 2> range{};  ///< Least and largest distance from the root along aside_B [m].
+  Vec3 root_B{Vec3::Zero()};       ///< Middle of its section at the root.
+  Vec3 axis_B{Vec3::UnitZ()};      ///< Unit, from the root to the tip.
+  Vec3 aside_B{Vec3::UnitX()};     ///< Unit, across the axis: where it bends.
+  double length{0};                ///< Distance from the root to where it is pushed aside [m].
+  std::array<double, 2> range{};   ///< Least and largest distance from the root along aside_B [m].
   std::array<double, 2> across{};  ///< Likewise along axis_B x aside_B [m].
   /** It goes all the way round an axis through `root_B`: then `range` has its radii, and aside_B
    points to where it is pushed. */

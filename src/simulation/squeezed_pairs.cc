@@ -65,8 +65,7 @@ Squeeze CalcSleeveSqueeze(const ElasticPart& sleeve, const ElasticMate& side, do
   const fits::RubberSleeve law{bore, outside, length, sleeve.modulus};
   if (gap > 0) {
     const double given = outside - bore - gap;
-    return {given,
-            fits::CalcSleeveStiffness(law),
+    return {given, fits::CalcSleeveStiffness(law),
             side.is_shaft ? std::array{0.0, -given} : std::array{given, 0.0},
             "wall of rubber, Gent and Lindley"};
   }

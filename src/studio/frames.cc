@@ -66,7 +66,8 @@ std::vector<protocol::BodyPose> ListMoved(const simulation::Frame& frame,
   return moved;
 }
 
-/** Lists the deformations that look different from what is known, at first all, and makes them known.
+/** Lists the deformations that look different from what is known, at first all, and makes them
+ * known.
  */
 std::vector<protocol::Deformation> ListDeformed(const std::vector<double>& amounts,
                                                 std::vector<double>* known) {

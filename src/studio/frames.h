@@ -10,8 +10,8 @@
 
 namespace hvas::studio {
 
-/** Makes the binary message with all poses and deformations that have changed since the client's last
- one; empty when none has.
+/** Makes the binary message with all poses and deformations that have changed since the client's
+ last one; empty when none has.
  @param t_ns  Time in the header of its frames [ns].
  @param[in,out] known  What the client has. */
 [[nodiscard]] std::string MakeFrames(const LiveFrame& frame, std::int64_t t_ns, std::uint32_t seq,

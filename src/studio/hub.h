@@ -101,8 +101,8 @@ class Hub {
     std::uint32_t sent_seq{0};
     std::uint32_t seen_seq{0};
     std::uint32_t epoch{0};
-    std::uint64_t serial{0};          ///< LiveFrame::serial of the last frame sent.
-    ShownState shown;                 ///< Poses and deformations that the client has.
+    std::uint64_t serial{0};  ///< LiveFrame::serial of the last frame sent.
+    ShownState shown;         ///< Poses and deformations that the client has.
     double allowance{kCommandBurst};
     std::int64_t last_command_ns{0};
   };

@@ -153,9 +153,9 @@ LiveListeners LiveScene::MakeListeners(const std::shared_ptr<const OpenScene>& s
       observer->OnRemoval(is_last);
     }
   };
-  listeners.on_frame = [this, scene, recording = live.recording](
-                           const simulation::Frame& frame, std::int64_t clock_ns,
-                           const PeakForces& peak_felt) {
+  listeners.on_frame = [this, scene, recording = live.recording](const simulation::Frame& frame,
+                                                                 std::int64_t clock_ns,
+                                                                 const PeakForces& peak_felt) {
     const simulation::Model& model = *scene->model;
     std::vector<double> deformations =
         simulation::CalcDeformations(*model.product, model.deformables, frame.X_WB);
@@ -163,9 +163,8 @@ LiveListeners LiveScene::MakeListeners(const std::shared_ptr<const OpenScene>& s
     {
       const std::lock_guard lock(mutex_);
       const auto speed = CalcHandSpeeds(frame_.frame, frame);
-      frame_ = {scene->epoch, frame_.serial + 1, frame,
-                clock_ns,     peak_felt,         speed,
-                std::move(deformations)};
+      frame_ = {scene->epoch, frame_.serial + 1,      frame, clock_ns, peak_felt,
+                speed,        std::move(deformations)};
       shown = recording != nullptr ? frame_ : LiveFrame();
     }
     if (recording != nullptr) {

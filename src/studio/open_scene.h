@@ -40,14 +40,15 @@ struct LiveFrame {
   std::int64_t clock_ns{0};  ///< MonotonicNs() at its tick.
   PeakForces peak_felt{};    ///< Largest since the previous frame, by hand [N].
   std::array<double, haptics::kMaxHands>
-      hand_speed{};  ///< Mean since the previous frame, by hand [m/s].
+      hand_speed{};                  ///< Mean since the previous frame, by hand [m/s].
   std::vector<double> deformations;  ///< Amounts, by the index in Model::deformables [m].
 };
 
 /** What a client has been shown. */
 struct ShownState {
-  std::vector<spatial::Pose> X_WB;  ///< By occurrence; empty: none.
-  std::vector<double> deformations;  ///< As in LiveFrame; what is missing is not deformed [m].
+  std::vector<spatial::Pose> X_WB;  ///< Poses by occurrence; empty: none.
+  std::vector<double>
+      deformations;  ///< Amounts as in LiveFrame; what is missing is not deformed [m].
 };
 
 }  // namespace hvas::studio

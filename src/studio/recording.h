@@ -73,7 +73,7 @@ class Recording final : public simulation::Sink {
   std::atomic<bool> is_on_{true};
   std::atomic<std::int64_t> start_ns_{0};  ///< Session time at which the present run began [ns].
   std::uint32_t frame_count_{0};           ///< Used by the publish thread only.
-  ShownState shown_;                       ///< As of the last frame; publish thread only.
+  ShownState shown_;                       ///< What the last frame has shown; publish thread only.
 };
 
 }  // namespace hvas::studio

@@ -273,10 +273,10 @@ std::string MakeGiven(const Summary& summary) {
       "<h2>Parts that gave</h2><div class=\"scroll\"><table><thead><tr><th>Part</th>"
       "<th class=\"l\">How far</th><th class=\"l\">On the way of</th></tr></thead><tbody>";
   for (const evidence::GivenPart& part : summary.given) {
-    html += fmt::format("<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td></tr>",
-                        Escape(NameOf(summary, part.occurrence)), evidence::Describe(part),
-                        part.moved == part.occurrence ? "itself"
-                                                      : Escape(NameOf(summary, part.moved)));
+    html +=
+        fmt::format("<tr><td>{}</td><td class=\"l\">{}</td><td class=\"l\">{}</td></tr>",
+                    Escape(NameOf(summary, part.occurrence)), evidence::Describe(part),
+                    part.moved == part.occurrence ? "itself" : Escape(NameOf(summary, part.moved)));
   }
   return html +
          "</tbody></table></div><p><small>The furthest in the session, by the poses of its ticks."
@@ -395,8 +395,8 @@ std::string MakeReportPage(const Summary& summary, const ReportedLeftOut& left_o
   return pages::MakeHtmlPage(MetaOf(summary, "product") + ": assembly report",
                              MakeHead(summary, left_out.count) + MakeProductPicture(summary) +
                                  left_out.section + MakeSequence(summary) + MakeWays(summary) +
-                                 MakeForces(summary) + MakeFits(summary) + MakeGiven(summary) + MakeLoops(summary) +
-                                 MakeIncidents(summary) + MakeSource(summary),
+                                 MakeForces(summary) + MakeFits(summary) + MakeGiven(summary) +
+                                 MakeLoops(summary) + MakeIncidents(summary) + MakeSource(summary),
                              kStyle);
 }
 

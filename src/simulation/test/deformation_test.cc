@@ -44,8 +44,8 @@ TEST(Deformation, WithoutAnAmountEveryPointStaysToTheBit) {
   }
 }
 
-// y (3 x^2 l - x^3) / (2 l^3): 5/16 of the tip's at the middle; straight on beyond the tip, by 3 y /
-// (2 l).
+// y (3 x^2 l - x^3) / (2 l^3): 5/16 of the tip's at the middle; straight on beyond the tip, by 3 y
+// / (2 l).
 TEST(Deformation, AnArmBendsAsACantileverFromItsRoot) {
   const DeformationForm form = FormOf(DeformationKind::kBend);
   constexpr double kY = 0.9e-3;

@@ -133,7 +133,9 @@ TEST(DeformedParts, ASpringIsDrawnLongerUntilItIsPressed) {
   EXPECT_EQ(CalcDeformations(*model->product, model->deformables, poses)[0], 0);
   // A piston that is not there presses nothing.
   const std::vector<bool> present{true, true, false};
-  EXPECT_NEAR(CalcDeformations(*model->product, model->deformables, PosesInPlace(*model), &present)[0], 6e-3, 1e-9);
+  EXPECT_NEAR(
+      CalcDeformations(*model->product, model->deformables, PosesInPlace(*model), &present)[0],
+      6e-3, 1e-9);
 }
 
 TEST(DeformedParts, TheUpperOneOfTwoGasketsLiesOnTheLowerOne) {
@@ -146,7 +148,9 @@ TEST(DeformedParts, TheUpperOneOfTwoGasketsLiesOnTheLowerOne) {
     const auto amounts = AmountsAt(*model, lid, travel);
     for (std::size_t i = 0; i < 3; ++i) {
       const Deformable& part = model->deformables[i];
-      EXPECT_EQ(part.occurrence, OccurrenceId(part.form.kind == DeformationKind::kShift ? 2 : 1 + (i > 0 ? 1U : 0U)));
+      EXPECT_EQ(
+          part.occurrence,
+          OccurrenceId(part.form.kind == DeformationKind::kShift ? 2 : 1 + (i > 0 ? 1U : 0U)));
       EXPECT_NEAR(amounts[i], 0.5 * std::min(travel, 0.4e-3), 1e-8) << i << " " << travel;
     }
   }

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "studio/frames.h"
+
 namespace hvas::studio {
 namespace {
 
@@ -133,6 +135,51 @@ TEST(FrameCodecTest, HandsAreTheGoldenBytes) {
   const std::string golden = Golden("hands");
   ASSERT_FALSE(golden.empty());
   EXPECT_EQ(Frame<protocol::HandState>(hands), golden);
+}
+
+TEST(FrameCodecTest, DeformationsAreTheGoldenBytes) {
+  const std::vector<protocol::Deformation> deformations{{1, 1.5F}, {101, 101.5F}};
+  const std::string golden = Golden("deformations");
+  ASSERT_FALSE(golden.empty());
+  EXPECT_EQ(Frame<protocol::Deformation>(deformations), golden);
+}
+
+/** The deformations of the next message to a client. */
+std::vector<protocol::Deformation> ListSent(const std::vector<double>& amounts, ShownState* shown) {
+  LiveFrame frame;
+  frame.deformations = amounts;
+  std::string bytes = MakeFrames(frame, kTimeNs, kSeq, shown);
+  std::vector<protocol::Deformation> sent;
+  while (!bytes.empty()) {
+    const protocol::Header header = HeaderOf(bytes);
+    if (header.kind == static_cast<std::uint16_t>(protocol::FrameKind::kDeformations)) {
+      sent.resize(header.count);
+      std::memcpy(sent.data(), bytes.data() + sizeof(header),
+                  header.count * sizeof(protocol::Deformation));
+    }
+    bytes.erase(0, header.size);
+  }
+  return sent;
+}
+
+TEST(FrameCodecTest, DeformationsAreSentAtFirstAllAndThenWhereTheyLookDifferent) {
+  ShownState shown;
+  EXPECT_TRUE(ListSent({}, &shown).empty());
+  EXPECT_EQ(ListSent({0, 1e-3, 0}, &shown).size(), 3U);
+  EXPECT_TRUE(ListSent({0, 1e-3 + 0.9e-6, 0}, &shown).empty());
+  const auto changed = ListSent({0, 1e-3 + 1.1e-6, 2e-6}, &shown);
+  ASSERT_EQ(changed.size(), 2U);
+  EXPECT_EQ(changed[0].index, 1U);
+  EXPECT_FLOAT_EQ(changed[0].amount_m, 1.0011e-3F);
+  EXPECT_EQ(changed[1].index, 2U);
+  // What is as drawn again is told, by however little it was deformed.
+  EXPECT_EQ(ListSent({0, 1e-3 + 1.1e-6, 0}, &shown).size(), 1U);
+  // Slow changes add up.
+  int messages = 0;
+  for (int i = 0; i <= 100; ++i) {
+    messages += ListSent({0, 1e-3 + 1.1e-6, i * 0.1e-6}, &shown).empty() ? 0 : 1;
+  }
+  EXPECT_NEAR(messages, 10, 1);
 }
 
 TEST(FrameCodecTest, ContactsAreTheGoldenBytes) {

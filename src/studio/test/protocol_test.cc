@@ -3,10 +3,12 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "base/test/await_true.h"
+#include "session/deformable_json.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
 #include "studio/live_run.h"
@@ -97,6 +99,19 @@ class ProtocolTest : public ::testing::Test {
   std::size_t pumped_{0};
   std::int64_t now_ns_{1'000'000'000};
 };
+
+TEST(DeformablesTest, EachKindIsAsTheSchemaSays) {
+  std::vector<simulation::Deformable> deformables;
+  for (int kind = 0; kind <= static_cast<int>(simulation::DeformationKind::kShift); ++kind) {
+    deformables.emplace_back().occurrence = product::OccurrenceId(0);
+    deformables.back().form.kind = static_cast<simulation::DeformationKind>(kind);
+  }
+  const Json forms = session::MakeFormsJson(deformables);
+  ASSERT_EQ(forms.size(), deformables.size());
+  for (const Json& form : forms) {
+    EXPECT_EQ(testing::FindFault("Deformable", form), "") << form;
+  }
+}
 
 TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   bench_.opener().Open("missing", "missing.step");
