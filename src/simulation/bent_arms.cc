@@ -21,7 +21,7 @@ constexpr int kStations = 240;           // Looks at an arm along the whole part
 constexpr int kBisections = 16;          // Of the step between two looks: a choice.
 constexpr double kBesideFar = 0.25;      // Share of the wall from its far side, at most: a choice.
 constexpr double kLeastBeside = 1e-6;    // [m] from the far side of the wall. A choice.
-constexpr int kMostTries = 12;           // Contacts from which an arm is looked for: a choice.
+constexpr int kMostArmTries = 12;        // Contacts from which an arm is looked for: a choice.
 constexpr double kShareOfDeepest = 0.3;  // A contact that is less deep bends nothing: a choice.
 constexpr double kWeld = 1e-7;           // Corners that are nearer are one [m]. A choice.
 constexpr double kBeyondRoot = 1e-5;     // Share of the length of the arm: a choice.
@@ -298,7 +298,7 @@ std::vector<BentArm> FindBentArms(const product::Product& product, const GivingP
   for (const auto& [distance, face] : order) {
     const MetFace& at = samples.by_face.at(face);
     const contact::Contact& contact = at.contact;
-    if (-distance < kShareOfDeepest * deepest || known.count(face) > 0 || tries >= kMostTries) {
+    if (-distance < kShareOfDeepest * deepest || known.count(face) > 0 || tries >= kMostArmTries) {
       continue;
     }
     ++tries;

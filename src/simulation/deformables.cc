@@ -23,7 +23,7 @@ using product::Part;
 using product::Product;
 
 constexpr int kSectors = 720;  // Of a turn, in which a ring is there or not: a choice.
-constexpr int kHalvings = 50;  // Of the compression of a part of a stack: below a nanometre.
+constexpr int kShareHalvings = 50;  // Of the compression of a part of a stack: below a nanometre.
 
 /** A ring or a tube: its axis, and its radii. */
 struct RingForm {
@@ -340,7 +340,7 @@ class Lister {
     for (const double force : pair.curve->pressed) {
       double low = 0;
       double high = pair.compression;
-      for (int i = 0; i < kHalvings; ++i) {
+      for (int i = 0; i < kShareHalvings; ++i) {
         const double middle = 0.5 * (low + high);
         (fits::CalcPressForce(*law, middle) < force ? low : high) = middle;
       }

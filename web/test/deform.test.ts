@@ -101,6 +101,7 @@ describe("the mesh of a part that gives", () => {
     expect(reach(0)).toBeCloseTo(1e-3, 8);
     expect(reach(1)).toBeCloseTo(2e-3, 8);
     expect(reach(2)).toBeCloseTo(1e-3, 8);
+    expect(parts.shapeOf(1)!.drawn).toBe(bar);
     store.ingest(amounts([[1, 0]]), 0);
     expect(deformed.update(store, parts)).toBe(true);
     expect(reach(1)).toBeCloseTo(1e-3, 8);

@@ -31,7 +31,6 @@ export const kSampleFloats = 16;
 const kSilenceMs = 1000;
 /** Between the speeds of two clocks, at most. */
 const kDrift = 1e-4;
-
 const kPoseFloats = 7;
 const Control = {
   lock: 0,

@@ -100,6 +100,7 @@ class DeformedPart {
     private readonly forms: readonly Form[],
   ) {
     this.shape = splitForBending(shape, forms);
+    this.shape.drawn = shape;
     this.rest = this.shape.positions.slice();
   }
 

@@ -60,7 +60,7 @@ export function ghostsOf(occurrence: number, held: readonly number[], scene: Sce
   const goal = [...new Set([occurrence, ...held, ...(step?.members ?? [])])].flatMap((id) => {
     const shape = parts.shapeOf(id);
     const pose = scene.occurrences.find((o) => o.id === id)?.goal;
-    return shape !== null && pose !== undefined ? [{ shape, pose }] : [];
+    return shape !== null && pose !== undefined ? [{ shape: shape.drawn, pose }] : [];
   });
   const own = parts.shapeOf(occurrence);
   return { goal, tracked: own === null ? [] : [{ shape: own, pose: { p: [0, 0, 0], q: [1, 0, 0, 0] } }] };

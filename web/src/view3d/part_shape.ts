@@ -14,6 +14,8 @@ export interface PartHit {
 export class PartShape {
   readonly box;
   readonly sphere;
+  /** The part as in the file; another one where this one is deformed. */
+  drawn: PartShape = this;
   private bvh: MeshBVH | null = null;
   private edgeLines: Float32Array | null = null;
 
@@ -82,6 +84,9 @@ export class PartShape {
 
   dispose(): void {
     this.geometry.dispose();
+    if (this.drawn !== this) {
+      this.drawn.dispose();
+    }
   }
 }
 
