@@ -22,7 +22,7 @@ using product::OccurrenceId;
 using product::Part;
 using product::Product;
 
-constexpr int kSectors = 720;  // Of a turn, in which a ring is there or not: a choice.
+constexpr int kSectors = 720;       // Of a turn, in which a ring is there or not: a choice.
 constexpr int kShareHalvings = 50;  // Of the compression of a part of a stack: below a nanometre.
 
 /** A ring or a tube: its axis, and its radii. */

@@ -1,5 +1,6 @@
 // The parts of products that are drawn deformed while others are on their way.
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -250,6 +251,75 @@ TEST(DeformedParts, BothArmsOfALidBendOutwardsAndTheLidStays) {
       EXPECT_NEAR(moved.norm(), most, 0.35 * most);  // The hooks, at the ends of the arms.
     }
   }
+}
+
+// Drawn at its nominal 4 mm, a pin of ISO 8752 is free 0.25 mm wider in radius; its hole has 4 mm.
+TEST(DeformedParts, ASlitPinIsDrawnAsWideAsItIsFreeUntilItsHoleClosesIt) {
+  constexpr double kDepth = 12e-3;
+  Product product;
+  product.name = "joint";
+  const auto block =
+      testing::AddPart(&product, "block", contact::testing::Cup(2e-3, 10e-3, 5e-3, 5e-3 + kDepth));
+  const auto pin =
+      testing::AddPart(&product, "roll pin", contact::testing::Bushing(1.2e-3, 2e-3, 20e-3, 5e-6));
+  testing::Place(&product, block, "block");
+  testing::Place(&product, pin, "roll pin", Pose(Vec3(0, 0, 5e-3)));
+  ASSERT_TRUE(mates::SetElasticParts({}, &product));
+  testing::Complete(&product);
+  const auto model = CompileDeformed(std::move(product));
+  ASSERT_EQ(model->deformables.size(), 1U);
+  const Deformable& part = model->deformables[0];
+  const auto radius = [&](double travel) {
+    const double amount = AmountsAt(*model, OccurrenceId(1), travel)[0];
+    return Deform(part.form, amount, Vec3(2e-3, 0, 1e-3)).head<2>().norm();
+  };
+  // The mesh is 5 um off the circle.
+  EXPECT_NEAR(radius(30e-3), 2.25e-3, 6e-6);
+  EXPECT_NEAR(radius(0.5 * kDepth), 2.125e-3, 10e-6);
+  EXPECT_NEAR(radius(0), 2e-3, 6e-6);
+}
+
+// Its hole makes a sleeve narrower all through; the shaft that comes last widens its bore again.
+TEST(DeformedParts, ASleeveIsNarrowedByItsHoleAndItsWallIsSqueezedByTheShaft) {
+  constexpr double kLength = 20e-3;
+  Product product;
+  product.name = "mount";
+  const auto eye =
+      testing::AddPart(&product, "eye", contact::testing::Cup(9e-3, 15e-3, 5e-3, 5e-3 + kLength));
+  const auto sleeve = testing::AddPart(&product, "rubber bushing",
+                                       contact::testing::Bushing(5e-3, 9e-3, kLength, 10e-6));
+  const auto bolt = testing::AddPart(&product, "axle", contact::testing::Shaft(5e-3, 40e-3, 10e-6));
+  testing::Place(&product, eye, "eye");
+  testing::Place(&product, sleeve, "rubber bushing", Pose(Vec3(0, 0, 5e-3)));
+  testing::Place(&product, bolt, "axle", Pose(Vec3(0, 0, 5e-3)));
+  mates::StatedElastic stated;
+  stated.part = "rubber bushing";
+  stated.free_size = 19e-3;
+  ASSERT_TRUE(mates::SetElasticParts({stated}, &product));
+  testing::Complete(&product);
+  const auto model = CompileDeformed(std::move(product));
+  const OccurrenceId id(1);
+  const auto radii = [&](const std::vector<double>& amounts) {
+    const auto map = MakePointMap(model->deformables, amounts, id);
+    const auto radius = [&](double r) {
+      const Vec3 p(0, r, 3e-3);
+      return (map ? map(p) : p).head<2>().norm();
+    };
+    return std::array{radius(5e-3), radius(9e-3)};
+  };
+  std::vector<bool> without_bolt{true, true, false};
+  std::vector<Pose> poses = PosesInPlace(*model);
+  const auto in_hole =
+      radii(CalcDeformations(*model->product, model->deformables, poses, &without_bolt));
+  EXPECT_NEAR(in_hole[0], 4.5e-3, 20e-6);
+  EXPECT_NEAR(in_hole[1], 9e-3, 20e-6);
+  const auto in_place = radii(CalcDeformations(*model->product, model->deformables, poses));
+  EXPECT_NEAR(in_place[0], 5e-3, 20e-6);
+  EXPECT_NEAR(in_place[1], 9e-3, 20e-6);
+  poses[id.index()] = Pose(Vec3(1, 0, 0));
+  const auto free = radii(CalcDeformations(*model->product, model->deformables, poses));
+  EXPECT_NEAR(free[0], 5e-3, 20e-6);
+  EXPECT_NEAR(free[1], 9.5e-3, 20e-6);
 }
 
 }  // namespace
