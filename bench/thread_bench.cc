@@ -15,11 +15,10 @@
 
 #include <fmt/format.h>
 
-#include "base/clock.h"
 #include "base/file_cache.h"
 #include "base/units.h"
 #include "cad/import.h"
-#include "haptics/test/rig.h"
+#include "haptics/test/turned_nut.h"
 #include "simulation/shapes.h"
 
 namespace {
@@ -27,11 +26,8 @@ namespace {
 using hvas::Vec3;
 using hvas::spatial::Pose;
 
-constexpr double kTurns = 5;     // After the play is taken up.
-constexpr double kStart = 6;     // Turns above where it is drawn, at the bolt's head.
-constexpr double kRate = 1;      // [turns/s]
-constexpr double kPush = 2e-3;   // How far the hand is ahead along the axis [m]: 2 N.
-constexpr double kRunIn = 0.25;  // [turns] until the play is taken up.
+constexpr hvas::haptics::testing::TurnedNut kTurned{.turns = 5, .rate = 1};
+constexpr double kStart = 6;  // Turns above where it is drawn, at the bolt's head.
 
 std::shared_ptr<const hvas::contact::Shape> Load(const std::filesystem::path& file) {
   hvas::Diagnostics diagnostics;
@@ -54,39 +50,6 @@ double Quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(k)];
 }
 
-struct Leg {
-  double turned{0}, advanced{0};  // After the play is taken up [rad, m].
-};
-
-/** Turns the nut and presses the way it goes; the hand follows it along the axis. */
-Leg Run(double sense, hvas::haptics::testing::HeldRig* rig, std::vector<double>* times_us) {
-  using hvas::haptics::testing::kDt;
-  const double rate = sense * kRate * hvas::units::kTurn;
-  const int ticks = static_cast<int>(std::lround((kRunIn + kTurns) / kRate / kDt));
-  const int run_in = static_cast<int>(std::lround(kRunIn / kRate / kDt));
-  const Vec3 centre_B = rig->part.p_BoBcm_B;
-  Leg leg;
-  double angle = 0;
-  double z_start = 0;
-  hvas::Quat q_before = rig->hand->last().X_WD.q();
-  for (int i = 0; i < ticks; ++i) {
-    const double z = (rig->hand->last().X_WD * centre_B).z() + sense * kPush;
-    const std::int64_t begin_ns = hvas::ThreadCpuNs();
-    rig->hand->LeadTo(Vec3(0, 0, z), Vec3(0, 0, rate));
-    times_us->push_back(1e-3 * static_cast<double>(hvas::ThreadCpuNs() - begin_ns));
-    const hvas::Quat q = rig->hand->last().X_WD.q();
-    if (i >= run_in) {
-      angle += hvas::spatial::RotationBetween(q_before, q).z();
-    } else {
-      z_start = rig->hand->last().X_WD.p().z();
-    }
-    q_before = q;
-  }
-  leg.turned = angle;
-  leg.advanced = rig->hand->last().X_WD.p().z() - z_start;
-  return leg;
-}
-
 void Measure(const std::filesystem::path& folder, const std::string& size, double pitch) {
   hvas::haptics::TickOptions options;
   options.condition = hvas::haptics::Condition::kCollision;
@@ -102,16 +65,16 @@ void Measure(const std::filesystem::path& folder, const std::string& size, doubl
   rig.Take();
   rig.hand->Wait(0.3);
   std::vector<double> times_us;
-  const Leg down = Run(-1, &rig, &times_us);
-  const Leg up = Run(1, &rig, &times_us);
-  const auto off = [pitch](const Leg& leg) {
-    return 100 * (leg.advanced / (leg.turned / hvas::units::kTurn) / pitch - 1);
+  const auto down = hvas::haptics::testing::Turn(kTurned, -1, &rig, &times_us);
+  const auto up = hvas::haptics::testing::Turn(kTurned, 1, &rig, &times_us);
+  const auto off = [pitch](const hvas::haptics::testing::NutLeg& leg) {
+    return 100 * (leg.advanced / leg.turns / pitch - 1);
   };
   fmt::print(
       "{:10} turns {:.2f} down, {:.2f} up; advance off by {:+.2f} %, {:+.2f} %; deepest {:.1f} um; "
       "tick "
       "median {:.0f}, p99 {:.0f}, p99.9 {:.0f}, max {:.0f} us\n",
-      size, -down.turned / hvas::units::kTurn, up.turned / hvas::units::kTurn, off(down), off(up),
+      size, -down.turns, up.turns, off(down), off(up),
       1e6 * hvas::haptics::testing::CalcDeepest(rig.hand->samples), Quantile(times_us, 0.5),
       Quantile(times_us, 0.99), Quantile(times_us, 0.999), Quantile(times_us, 1));
   std::fflush(stdout);

@@ -1,5 +1,6 @@
 #include "studio/json_fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -70,8 +71,12 @@ Result<std::string> TextAt(const Json& object, const char* name, std::size_t lon
   if (field == nullptr || !field->is_string()) {
     return FailField(name, "a text");
   }
-  if (field->get_ref<const std::string&>().size() > longest) {
-    return FailField(name, fmt::format("a text of at most {} bytes", longest).c_str());
+  const std::string& text = field->get_ref<const std::string&>();
+  // In UTF-8 all but the first byte of a character begin with the bits 10.
+  const auto characters = static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+  if (characters > longest) {
+    return FailField(name, fmt::format("a text of at most {} characters", longest).c_str());
   }
   return field->get<std::string>();
 }

@@ -37,7 +37,7 @@ namespace hvas::studio {
 [[nodiscard]] Json MakeDeferredReply(const std::string& to, const Json& id,
                                      const Result<Json>& result);
 
-/** Longest text of a command whose schema gives no length [bytes]: a choice. */
+/** Longest text of a command whose schema gives no length [characters]: a choice. */
 inline constexpr std::size_t kLongestText = 1000;
 
 /** Required fields of a command. Errors: kInvalid, with the field's name and the expected type. */

@@ -298,7 +298,7 @@ def told_type(kind):
 def page_field(field):
     told = ["" if field.kind == "text" else told_type(field.kind)]
     told += [f"{field.told['low']} to {field.told['high']}"] if "low" in field.told else []
-    told += [f"at most {field.told['longest']} bytes"] if "longest" in field.told else []
+    told += [f"at most {field.told['longest']} characters"] if "longest" in field.told else []
     told += [f"{cpp_literal(field.told['missing'])} when missing"] if field.told.get("missing", "") != "" else []
     told += [field.about.replace("; ", ", ")]
     text = ", ".join(one for one in told if one)

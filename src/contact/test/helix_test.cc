@@ -154,7 +154,8 @@ class NutOnBolt : public ::testing::Test {
   }
 
   static const std::shared_ptr<const Shape>& Nut() {
-    static const auto shape = testing::Build(ThreadMesh({}, 7.5e-3, kClearance, kNutOutside, kFine));
+    static const auto shape =
+        testing::Build(ThreadMesh({}, 7.5e-3, kClearance, kNutOutside, kFine));
     return shape;
   }
 

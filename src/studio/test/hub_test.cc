@@ -312,6 +312,15 @@ TEST_F(HubTest, OthersSeeNamesAndWhatIsLookedAt) {
   EXPECT_EQ(second.Last("roles")["clients"][0]["name"], "Ada <b>Byron");
   EXPECT_TRUE(IsError(Ask(a, &first, {{"command", "introduce"}, {"name", std::string(41, 'x')}}),
                       "invalid"));
+  // The limit is of characters, of which some take more than a byte.
+  std::string long_name;
+  for (int i = 0; i < 40; ++i) {
+    long_name += "\u00fc";
+  }
+  EXPECT_EQ(Ask(a, &first, {{"command", "introduce"}, {"name", long_name}})["ok"], true);
+  EXPECT_EQ(second.Last("roles")["clients"][0]["name"], long_name);
+  EXPECT_TRUE(IsError(Ask(a, &first, {{"command", "introduce"}, {"name", long_name + "\u00fc"}}),
+                      "invalid"));
   const Json look{{"command", "look"}, {"eye", {0, -1, 0.5}}, {"target", {0, 0, 0}}};
   EXPECT_EQ(Ask(b, &second, look)["ok"], true);
   EXPECT_EQ(first.Last("looking")["client"], b);
