@@ -285,7 +285,13 @@ void MoveTo(const std::vector<Vec3>& points, double noise, Helix* helix) {
     const Vec3 lean = x[0] * ways[0] + x[1] * ways[1];
     helix->SetAxis((helix->axis + lean.cross(helix->axis)).normalized(), helix->u);
     helix->origin += x[2] * ways[0] + x[3] * ways[1] + x[4] * ways[2];
-    helix->pitch *= 1 + x[5];
+    constexpr double kMost = 0.02;  // A step beyond is none that a thread asks for. A choice.
+    const double growth = 1 + std::clamp(x[5], -kMost, kMost);
+    helix->pitch *= growth;
+    for (HelixCorner& corner : helix->corners) {
+      corner.z *= growth;
+    }
+    helix->Complete();
   }
 }
 
@@ -483,17 +489,15 @@ class HelixFit {
     const double highest = helix_.high + helix_.pitch;
     for (int i = 0; i < kRounds; ++i) {
       // Turns of a pitch that is slightly wrong blur a profile that is drawn from many.
-      if (!DrawMiddle()) {
+      if (!DrawMiddle() || !Grow(lowest, highest, CalcTolerance())) {
         return std::nullopt;
       }
-      Grow(lowest, highest, CalcTolerance());
       // Vertices alone are on the thread; what is between them is on chords.
       MoveTo(Thinned(ListVertices(), kMostPoints), kNoise * depth_, &helix_);
     }
-    if (!DrawMiddle()) {
+    if (!DrawMiddle() || !Grow(lowest, highest, CalcTolerance())) {
       return std::nullopt;
     }
-    Grow(lowest, highest, CalcTolerance());
     const bool is_long = helix_.high - helix_.low > helix_.pitch;
     const bool conforms = is_long && Draw() && off_ < kConforms * depth_;
     return conforms ? std::optional(helix_) : std::nullopt;
@@ -503,7 +507,7 @@ class HelixFit {
   /** Span, radii and side of the triangles that have the pitch. False where they are no thread. */
   bool MeasureFlanks() {
     constexpr double kSame = 0.25;     // Of the pitch: what normals may be wrong by.
-    constexpr double kTrimmed = 0.01;  // Of the area at either end. Both are choices.
+    constexpr double kTrimmed = 5e-3;  // Of the area at either end. Both are choices.
     std::vector<std::pair<double, double>> heights;
     std::vector<std::pair<double, double>> radii;
     double outward = 0;
@@ -560,7 +564,9 @@ class HelixFit {
   }
 
   [[nodiscard]] bool IsBetweenRadii(double r) const {
-    const double margin = 0.05 * depth_;
+    constexpr double kBeside =
+        0.1;  // Of the depth: what the ends of flanks may be missed by. A choice.
+    const double margin = kBeside * depth_;
     return r > least_ - margin && r < largest_ + margin;
   }
 
@@ -692,7 +698,13 @@ class HelixFit {
           }
         });
     helix_.deviation = std::max(helix_.deviation, off_);
-    return off_ < kBefore * depth_;
+    if (off_ >= kBefore * depth_) {
+      return false;
+    }
+    least_ = helix_.least_radius;
+    largest_ = helix_.largest_radius;
+    depth_ = largest_ - least_;
+    return true;
   }
 
   [[nodiscard]] double CalcDeviation(const Place& place) const {
@@ -702,8 +714,8 @@ class HelixFit {
   }
 
   /** Widens the span to either side as long as all of the part there is on the surface.
-   @param tolerance  [m] */
-  void Grow(double lowest, double highest, double tolerance) {
+   False where not even the middle is. @param tolerance  [m] */
+  bool Grow(double lowest, double highest, double tolerance) {
     constexpr double kSlices = 16;  // Of a pitch. A choice.
     const double step = helix_.pitch / kSlices;
     const auto count = static_cast<std::size_t>(std::ceil((highest - lowest) / step));
@@ -738,6 +750,9 @@ class HelixFit {
              slices[static_cast<std::size_t>(i)].worst < tolerance;
     };
     const auto middle = static_cast<long>((0.5 * (helix_.low + helix_.high) - lowest) / step);
+    if (!is_on_it(middle)) {
+      return false;
+    }
     long first = middle;
     long last = middle;
     while (is_on_it(first - 1)) {
@@ -748,6 +763,7 @@ class HelixFit {
     }
     helix_.low = slices[static_cast<std::size_t>(first)].low;
     helix_.high = slices[static_cast<std::size_t>(last)].high;
+    return true;
   }
 
   // Points that axis and pitch are found from, and those for a first look; spread of these from

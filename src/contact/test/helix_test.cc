@@ -62,6 +62,18 @@ TEST(HelixFit, FindsBoltsAndNutsOfBothSensesAnywhere) {
   }
 }
 
+TEST(HelixFit, FindsShortOnes) {
+  const ThreadSize size;
+  for (const double turns : {2.0, 2.5, 3.0, 4.0, 5.0}) {
+    for (const double outside : {0.0, kNutOutside}) {
+      const auto found = Find(ThreadMesh(size, turns * size.pitch, 60e-6, outside));
+      ASSERT_EQ(found.size(), 1u) << turns << " turns, outside " << outside;
+      EXPECT_NEAR(found[0].pitch, size.pitch, 1e-3 * size.pitch);
+      EXPECT_NEAR(found[0].high - found[0].low, turns * size.pitch, 0.1 * size.pitch);
+    }
+  }
+}
+
 TEST(HelixFit, FindsNoneInWhatIsTurned) {
   EXPECT_TRUE(Find(testing::Bushing(5e-3, 10e-3, 30e-3)).empty());
   // Grooves side by side, as threads are drawn that do not rise.
