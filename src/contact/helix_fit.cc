@@ -422,6 +422,11 @@ class ProfileDrawing {
     }
     std::sort(corners.begin(), corners.end(),
               [](const HelixCorner& a, const HelixCorner& b) { return a.z < b.z; });
+    const double least = 1e-6 * pitch_;  // Nearer ones are one.
+    const auto last = std::unique(
+        corners.begin(), corners.end(),
+        [least](const HelixCorner& a, const HelixCorner& b) { return b.z - a.z < least; });
+    corners.erase(last, corners.end());
     return corners;
   }
 
@@ -553,9 +558,10 @@ class HelixFit {
     const double turns = (helix_.high - helix_.low) / helix_.pitch;
     depth_ = largest_ - least_;
     const double flanks = units::kTurn * 0.5 * (least_ + largest_) * turns * depth_;
-    constexpr double kShallow = 0.05;  // Of the pitch: less is a knurl. A choice.
-    return turns > 1.5 && depth_ > kShallow * helix_.pitch && depth_ < largest_ &&
-           area > kShare * flanks;
+    constexpr double kShallow = 0.05;   // Of the pitch: less is a knurl. A choice.
+    constexpr double kMostTurns = 500;  // More are a knurl or noise. A choice.
+    return turns > 1.5 && turns < kMostTurns && depth_ > kShallow * helix_.pitch &&
+           depth_ < largest_ && area > kShare * flanks;
   }
 
   /** How far the part may be from the helix to either side of the middle [m]. */
@@ -609,7 +615,9 @@ class HelixFit {
         continue;
       }
       bool is_between = false;
-      for (std::size_t j = 0; j < beside[i].size() && !is_between; ++j) {
+      constexpr std::size_t kMany = 64;  // Neighbours: it is the middle of a fan. A choice.
+      const std::size_t count = beside[i].size() < kMany ? beside[i].size() : 0;
+      for (std::size_t j = 0; j < count && !is_between; ++j) {
         for (std::size_t k = 0; k < j && !is_between; ++k) {
           const Vec3& a = mesh_.vertices[beside[i][j]];
           const Vec3& b = mesh_.vertices[beside[i][k]];

@@ -10,7 +10,7 @@ namespace {
 const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::body.
 // Points of a leaf beside threads that are deep in one another, whose flanks bear what there is to
 // bear. A choice.
-constexpr std::uint32_t kBesideThread = 4;
+constexpr std::uint32_t kBesideThread = 2;
 constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {

@@ -198,6 +198,10 @@ void Shape::Data::Complete() {
   for (const spatial::Surface& surface : exact.faces) {
     exact.forms.push_back(MakeFaceForm(surface));
   }
+  // A file may have anything.
+  std::erase_if(helices, [](const Helix& helix) {
+    return helix.corners.size() < 2 || !(helix.pitch > 0) || !(helix.low < helix.high);
+  });
   for (Helix& helix : helices) {
     helix.Complete();
   }

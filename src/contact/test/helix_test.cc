@@ -157,7 +157,7 @@ class NutOnBolt : public ::testing::Test {
   static constexpr double kClearance = 80e-6;
   static constexpr int kFine = 96;
 
-  NutOnBolt() : bolt(Bolt()), nut(Nut()) { scene.Add(bolt, {}); }
+  NutOnBolt() : bolt_(Bolt()), nut_(Nut()) { scene_.Add(bolt_, {}); }
 
   // Made once, as it takes seconds.
   static const std::shared_ptr<const Shape>& Bolt() {
@@ -174,27 +174,27 @@ class NutOnBolt : public ::testing::Test {
   /** Deepest contact of the nut, some pitches up the bolt and turned on by so many turns. */
   double QueryAt(const Vec3& off, double turn) {
     const spatial::Pose X_WN(Quat(Eigen::AngleAxisd(2 * std::numbers::pi * turn, Vec3::UnitZ())),
-                             Vec3(0, 0, 4 * size.pitch + turn * size.pitch) + off);
+                             Vec3(0, 0, 4 * size_.pitch + turn * size_.pitch) + off);
     QueryOptions options;
     options.margin = 100e-6;
-    scene.Query(*nut, X_WN, options, &workspace);
-    return workspace.deepest();
+    scene_.Query(*nut_, X_WN, options, &workspace_);
+    return workspace_.deepest();
   }
 
-  const ThreadSize size;
-  std::shared_ptr<const Shape> bolt;
-  std::shared_ptr<const Shape> nut;
-  Scene scene;
-  QueryWorkspace workspace;
+  const ThreadSize size_;
+  std::shared_ptr<const Shape> bolt_;
+  std::shared_ptr<const Shape> nut_;
+  Scene scene_;
+  QueryWorkspace workspace_;
 };
 
 TEST_F(NutOnBolt, GapsOfFlanksAreThoseOfTheClosedForm) {
-  ASSERT_EQ(bolt->data().helices.size(), 1u);
-  ASSERT_EQ(nut->data().helices.size(), 1u);
+  ASSERT_EQ(bolt_->data().helices.size(), 1u);
+  ASSERT_EQ(nut_->data().helices.size(), 1u);
   // Across the axis a clearance c leaves c cos 60 beside a flank of 60 degrees to the axis, less by
   // the rise; along the axis a shift s takes s sin 60 of one of the flanks.
-  const double r = size.crest - 0.5 * size.depth;
-  const double rise = std::numbers::sqrt3 / 2 * size.pitch / (2 * std::numbers::pi * r);
+  const double r = size_.crest - 0.5 * size_.depth;
+  const double rise = std::numbers::sqrt3 / 2 * size_.pitch / (2 * std::numbers::pi * r);
   const double stretch = 1 / std::sqrt(1 + rise * rise);
   for (const double s : {-40e-6, -20e-6, 0.0, 20e-6, 40e-6}) {
     const double expected = stretch * (0.5 * kClearance - std::numbers::sqrt3 / 2 * std::abs(s));
@@ -223,16 +223,16 @@ TEST_F(NutOnBolt, TurningWithoutTheAdvanceMeetsTheFlank) {
   // A twentieth of a turn without its advance is a shift by a twentieth of the pitch.
   QueryOptions options;
   const spatial::Pose X_WN(Quat(Eigen::AngleAxisd(0.1 * std::numbers::pi, Vec3::UnitZ())),
-                           Vec3(0, 0, 4 * size.pitch));
-  EXPECT_FALSE(scene.IsFree(*nut, X_WN, 2e-6, options, &workspace));
-  const spatial::Pose X_WN_advanced(X_WN.q(), X_WN.p() + 0.05 * size.pitch * Vec3::UnitZ());
-  EXPECT_TRUE(scene.IsFree(*nut, X_WN_advanced, 2e-6, options, &workspace));
+                           Vec3(0, 0, 4 * size_.pitch));
+  EXPECT_FALSE(scene_.IsFree(*nut_, X_WN, 2e-6, options, &workspace_));
+  const spatial::Pose X_WN_advanced(X_WN.q(), X_WN.p() + 0.05 * size_.pitch * Vec3::UnitZ());
+  EXPECT_TRUE(scene_.IsFree(*nut_, X_WN_advanced, 2e-6, options, &workspace_));
 }
 
 TEST_F(NutOnBolt, NormalsSeparate) {
   QueryAt(Vec3(20e-6, 0, 60e-6), 0.3);
-  ASSERT_GT(workspace.contacts().size(), 8u);
-  for (const Contact& c : workspace.contacts()) {
+  ASSERT_GT(workspace_.contacts().size(), 8u);
+  for (const Contact& c : workspace_.contacts()) {
     EXPECT_NEAR(c.nhat_W.norm(), 1, 1e-9);
     if (c.distance < 0) {
       // The nut is pushed down, on the flanks that it was shifted into.
@@ -246,17 +246,17 @@ TEST_F(NutOnBolt, MatesThatAnswerTakeTheThreadsOutOfContact) {
   const IgnoredPair ignored{BodyId{0}, thread, thread};
   QueryOptions options;
   options.ignored = {&ignored, 1};
-  const spatial::Pose X_WN(Quat::Identity(), Vec3(0, 0, 4 * size.pitch + 60e-6));
-  EXPECT_FALSE(scene.IsFree(*nut, X_WN, 1e-6, {}, &workspace));
-  EXPECT_TRUE(scene.IsFree(*nut, X_WN, 1e-6, options, &workspace));
+  const spatial::Pose X_WN(Quat::Identity(), Vec3(0, 0, 4 * size_.pitch + 60e-6));
+  EXPECT_FALSE(scene_.IsFree(*nut_, X_WN, 1e-6, {}, &workspace_));
+  EXPECT_TRUE(scene_.IsFree(*nut_, X_WN, 1e-6, options, &workspace_));
 }
 
 TEST_F(NutOnBolt, ThreadsAreKeptWithTheShape) {
-  const auto kept = DeserialiseShape(SerialiseShape(*nut));
+  const auto kept = DeserialiseShape(SerialiseShape(*nut_));
   ASSERT_NE(kept, nullptr);
   ASSERT_EQ(kept->data().helices.size(), 1u);
   const double before = QueryAt(Vec3(30e-6, 0, 0), 0.2);
-  nut = kept;
+  nut_ = kept;
   EXPECT_EQ(QueryAt(Vec3(30e-6, 0, 0), 0.2), before) << "to the bit";
 }
 
