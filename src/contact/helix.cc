@@ -53,7 +53,8 @@ void Helix::Complete() {
     // The corner that is kSidesBefore before the i-th one, of as many turns as it takes.
     const auto corner_at = [&](std::size_t k) {
       const std::size_t turned = k + 2 * count - kSidesBefore;  // Two turns from below zero.
-      const double turn = static_cast<double>(turned / count) - 2;
+      const std::size_t turns = turned / count;
+      const double turn = static_cast<double>(turns) - 2;
       const HelixCorner& corner = corners[turned % count];
       return std::pair(corner.z + turn * pitch, corner.r);
     };

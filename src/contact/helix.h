@@ -32,7 +32,7 @@ struct HelixCorner {
 /** A straight side of a thread's profile, in a plane through the axis. */
 struct HelixSide {
   double z{0}, r{0};      ///< Where it begins [m].
-  double dz{0}, dr{0};    ///< From there to its end, dz > 0 [m].
+  double dz{0}, dr{0};    ///< Way from there to its end, dz > 0 [m].
   double slope{0};        ///< dr / dz.
   double inverse{0};      ///< 1 / (dz^2 + dr^2) [1/m^2].
   double n_z{0}, n_r{1};  ///< Unit normal, out of the material.
@@ -42,7 +42,7 @@ struct HelixSide {
  about an axis and moves along it, evenly. Analytic where a mesh of it has facets. In the frame of
  the shape it belongs to. */
 struct Helix {
-  Vec3 origin{Vec3::Zero()};  ///< On the axis.
+  Vec3 origin{Vec3::Zero()};  ///< A point of the axis.
   Vec3 axis{Vec3::UnitZ()};   ///< Unit.
   Vec3 u{Vec3::UnitX()};      ///< Unit, across the axis: azimuth zero.
   Vec3 v{Vec3::UnitY()};      ///< Unit, axis x u: a quarter of a turn on.
@@ -50,15 +50,15 @@ struct Helix {
   double sense{1};            ///< +1: right-handed; -1: left-handed.
   double outward{1};          ///< +1: material is within, as in a bolt; -1: as in a nut.
   double low{0}, high{0};     ///< Span along the axis in which the part is this surface [m].
-  double least_radius{0}, largest_radius{0};  ///< Of the profile [m].
+  double least_radius{0}, largest_radius{0};  ///< Radii of the profile [m].
   double inverse_pitch{0};                    ///< [1/m]
   double least_cosine{0};            ///< Least of what the distance is of that across the axis.
   double deviation{0};               ///< Largest distance of the part's mesh from it there [m].
-  std::vector<HelixCorner> corners;  ///< By z, at least two; after a pitch they come again.
+  std::vector<HelixCorner> corners;  ///< Corners by z, at least two; after a pitch they come again.
   /** Sides behind each corner, with the last two of the turn before and the first two of the next.
    */
   std::vector<HelixSide> sides;
-  std::vector<std::uint16_t> side_at;  ///< For each bin of the pitch the side in which it begins.
+  std::vector<std::uint16_t> side_at;  ///< Side in which each bin of the pitch begins.
 
   /** Fills in what follows from corners: radii, normals and sides. */
   void Complete();
@@ -75,7 +75,7 @@ struct Helix {
 struct HelixPoint {
   double height{0};           ///< Along the axis from the origin [m].
   double radius{0};           ///< [m]
-  double cosine{1}, sine{0};  ///< Of its azimuth.
+  double cosine{1}, sine{0};  ///< Those of its azimuth.
 
   /** @param x,y  Along u and v from the axis [m]. */
   static HelixPoint At(double x, double y, double height) noexcept {

@@ -35,9 +35,9 @@ std::uint32_t ForEachEdgeContact(const Helix& edges, const Helix& field, const M
     const auto first = static_cast<long>(std::ceil((low - corner.z) / step));
     const auto last = static_cast<long>(std::floor((high - corner.z) / step));
     for (long i = first; i <= last; ++i, ++count) {
-      constexpr auto kCount = static_cast<long>(kHelixAzimuths);
+      const auto around = static_cast<long>(kHelixAzimuths);
       const auto& azimuth =
-          HelixAzimuths()[static_cast<std::size_t>((i % kCount + kCount) % kCount)];
+          HelixAzimuths()[static_cast<std::size_t>((i % around + around) % around)];
       const double c = azimuth[0];
       const double s = edges.sense * azimuth[1];
       const double height = corner.z + static_cast<double>(i) * step;

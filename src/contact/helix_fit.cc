@@ -74,8 +74,8 @@ std::vector<SurfacePoint> ListPoints(const Mesh& mesh, const std::vector<spatial
 /** The axes of the faces of revolution, each once, those with the most area first. */
 std::vector<Axis> ListAxes(const Mesh& mesh, const std::vector<spatial::Surface>& faces,
                            double size) {
-  constexpr double kSameDirection = 2e-3;  // [rad]
-  constexpr double kSamePlace = 2e-3;      // Of the part's size. Both are choices.
+  constexpr double kSameDirection = 2e-3;  // [rad]: a choice.
+  constexpr double kSamePlace = 2e-3;      // Of the part's size: a choice.
   std::vector<double> area(faces.size(), 0.0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     area[mesh.face[t]] += CalcArea(mesh, t);
@@ -357,8 +357,8 @@ class ProfileDrawing {
   static constexpr std::size_t kSteps = 512;  // A choice: 2.4 um of an M8.
 
   void Raise(long i, double r) {
-    constexpr auto kCount = static_cast<long>(kSteps);
-    double& radius = radius_[static_cast<std::size_t>((i % kCount + kCount) % kCount)];
+    const auto count = static_cast<long>(kSteps);
+    double& radius = radius_[static_cast<std::size_t>((i % count + count) % count)];
     radius = std::max(radius, r);
   }
 

@@ -23,13 +23,13 @@ inline constexpr std::size_t kMaxQueryBodies = 512;
 struct ThreadPair {
   const Helix* held{nullptr};
   const Helix* scene{nullptr};
-  bool is_deep{false};  ///< By so much that what is left of flanks at their ends does not matter.
+  bool is_deep{false};  ///< So far that what is left of flanks at their ends does not matter.
 };
 
 /** Which samples of a part the edges of its thread stand for. */
 struct ThreadSamples {
   std::uint8_t number{0};  ///< Those of which Shell::thread is this; 0: none.
-  std::uint8_t beyond{0};  ///< And these; 0: none.
+  std::uint8_t beyond{0};  ///< Number for those beyond its span; 0: none.
 
   [[nodiscard]] bool Has(std::uint8_t thread) const noexcept {
     return thread != 0 && (thread == number || thread == beyond);

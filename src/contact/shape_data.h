@@ -125,8 +125,8 @@ struct Shape::Data {
   Field field;
   ExactTable exact;
   std::vector<Helix> helices;  ///< Threads that are modelled; mostly none.
-  /** Of a shape with threads, for each list of zones one more than the number of the thread on
-   which all of its triangles lie, or 0; Complete fills it. */
+  /** Threads of the zones' lists: one more than the number of the thread on which all triangles of
+   a list lie, or 0. Empty without threads; Complete fills it. */
   std::vector<std::uint8_t> list_thread;
   double spacing{0};
   Shell shell;  ///< All samples.

@@ -15,7 +15,7 @@ struct ThreadSize {
   double pitch{1.25e-3};
   double crest{4e-3};  ///< Radius of the bolt's crest.
   double depth{0.7e-3};
-  double flat{0.25};  ///< Of the pitch, at the crest.
+  double flat{0.25};  ///< Share of the pitch that is flat at the crest.
   double sense{1};    ///< +1: right-handed.
 
   /** Radius at a height along the axis from the middle of the crest. */

@@ -12,7 +12,7 @@ namespace hvas::haptics::testing {
 
 /** How a scripted hand turns a nut on a bolt along z. */
 struct TurnedNut {
-  double turns{5};      ///< After the play is taken up.
+  double turns{5};      ///< Turns after the play is taken up.
   double rate{1};       ///< [turns/s]
   double push{2e-3};    ///< How far the hand is ahead along the axis [m]: 2 N.
   double run_in{0.25};  ///< [turns] until the play is taken up.
