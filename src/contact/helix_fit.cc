@@ -41,6 +41,19 @@ double CalcArea(const Mesh& mesh, std::uint32_t t) {
   return 0.5 * (mesh.vertices[v[1]] - a).cross(mesh.vertices[v[2]] - a).norm();
 }
 
+/** So many of them, evenly, or all where there are no more. */
+template <typename T>
+std::vector<T> Thinned(const std::vector<T>& all, std::size_t most) {
+  if (all.size() <= most) {
+    return all;
+  }
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < most; ++i) {
+    kept.push_back(all[i * all.size() / most]);
+  }
+  return kept;
+}
+
 /** The points of a mesh: one for each vertex and each direction in which triangles around it look,
  as there are several at an edge. */
 std::vector<SurfacePoint> ListPoints(const Mesh& mesh, const std::vector<spatial::Surface>& faces) {
@@ -110,7 +123,7 @@ std::vector<Axis> ListAxes(const Mesh& mesh, const std::vector<spatial::Surface>
 std::optional<Axis> FindScrewAxis(const std::vector<SurfacePoint>& points,
                                   const spatial::Box& box) {
   constexpr std::size_t kLeast = 200;  // Points: fewer are no thread.
-  constexpr double kMost = 4000;       // Points that are looked at.
+  constexpr std::size_t kMost = 4000;  // Points that are looked at.
   constexpr int kSteps = 40;           // Of them, half with the wider of the two scales.
   constexpr double kWide = 0.02;       // Residuals that count for a quarter.
   constexpr double kNarrow = 0.002;    // All are choices.
@@ -125,9 +138,8 @@ std::optional<Axis> FindScrewAxis(const std::vector<SurfacePoint>& points,
   }
   const double size = box.size().norm();
   std::vector<std::pair<Vec6, double>> rows;  // With the area.
-  const double step = std::max(1.0, static_cast<double>(freeform.size()) / kMost);
-  for (double at = 0; at < static_cast<double>(freeform.size()); at += step) {
-    const SurfacePoint& point = *freeform[static_cast<std::size_t>(at)];
+  for (const SurfacePoint* const at : Thinned(freeform, kMost)) {
+    const SurfacePoint& point = *at;
     const Vec3 p = (point.p - box.centre()) / size;
     Vec6 row;
     row << p.cross(point.n) / point.area, point.n / point.area;
@@ -433,7 +445,7 @@ class ProfileDrawing {
   [[nodiscard]] Vec2 Meet(std::size_t before, std::size_t corner, std::size_t behind) const {
     constexpr std::size_t kLong = 6;  // Steps; a line through fewer is no better. A choice.
     constexpr double kFar = 2;        // Steps that a corner may move: more is another corner.
-    const Vec2 at = At(corner);
+    Vec2 at = At(corner);
     if (corner - before < kLong || behind - corner < kLong) {
       return at;
     }
@@ -631,15 +643,6 @@ class HelixFit {
     return vertices;
   }
 
-  static std::vector<Vec3> Thinned(const std::vector<Vec3>& all, double count) {
-    std::vector<Vec3> points;
-    const double step = std::max(1.0, static_cast<double>(all.size()) / count);
-    for (double at = 0; at < static_cast<double>(all.size()); at += step) {
-      points.push_back(all[static_cast<std::size_t>(at)]);
-    }
-    return points;
-  }
-
   /** Visits the three places of each triangle in the present span. */
   template <typename Visit>
   void ForEachTriangle(double low, double high, const Visit& visit) const {
@@ -776,8 +779,8 @@ class HelixFit {
 
   // Points that axis and pitch are found from, and those for a first look; spread of these from
   // which on axis and pitch are too far off to be mended, of the depth. All are choices.
-  static constexpr double kMostPoints = 2000;
-  static constexpr double kFewPoints = 1000;
+  static constexpr std::size_t kMostPoints = 2000;
+  static constexpr std::size_t kFewPoints = 1000;
   static constexpr double kNearly = 0.15;
   static constexpr int kRounds = 5;
   static constexpr double kAsInMiddle = 1.7;       ///< Largest distance over that in the middle.
