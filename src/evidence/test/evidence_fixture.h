@@ -40,12 +40,12 @@ template <typename T>
 
 /** A peg that is put into its block, recorded once for all tests here. */
 class EvidenceTest : public ::testing::Test {
- protected:
+ public:
   static void SetUpTestSuite() {
-    folder_ = std::make_unique<hvas::testing::TemporaryFolder>();
+    folder = std::make_unique<hvas::testing::TemporaryFolder>();
     const auto& model = simulation::testing::PegInBlockModel();
     record::RecorderOptions options;
-    options.path = *folder_ / "session";
+    options.path = *folder / "session";
     const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
     session::SessionRecorder sink(recorder->get(), *model);
     simulation::Simulation simulation(model, haptics::TickOptions());
@@ -57,14 +57,14 @@ class EvidenceTest : public ::testing::Test {
     ASSERT_TRUE((*recorder)->Finish().has_value());
   }
 
-  static void TearDownTestSuite() { folder_.reset(); }
+  static void TearDownTestSuite() { folder.reset(); }
 
-  record::Reader reader = *record::Reader::Open(*folder_ / "session");
+  record::Reader reader = *record::Reader::Open(*folder / "session");
   const std::vector<record::TickRecord> ticks = *reader.ReadTicks({});
   hvas::testing::TemporaryFolder out;
 
  private:
-  static inline std::unique_ptr<hvas::testing::TemporaryFolder> folder_;
+  static inline std::unique_ptr<hvas::testing::TemporaryFolder> folder;
 };
 
 }  // namespace hvas::evidence::testing

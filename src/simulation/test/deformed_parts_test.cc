@@ -177,7 +177,8 @@ TEST(DeformedParts, ACapAroundABeadOpensAllAroundByWhatTheTwoOverlap) {
   EXPECT_EQ(cap.form.shares[0], 1);
   EXPECT_EQ(AmountsAt(*model, OccurrenceId(1), 0.1)[0], 0);
   double most = 0;
-  for (double travel = 0; travel < 10e-3; travel += 20e-6) {
+  for (int i = 0; i < 500; ++i) {
+    const double travel = 20e-6 * i;
     most = std::max(most, AmountsAt(*model, OccurrenceId(1), travel)[0]);
   }
   EXPECT_NEAR(most, model->sequence.gives[0].width, 0.05 * most);
@@ -228,7 +229,8 @@ TEST(DeformedParts, BothArmsOfALidBendOutwardsAndTheLidStays) {
   ASSERT_EQ(model->deformables.size(), 2U);
   double most = 0;
   double at = 0;
-  for (double travel = 0; travel < 10e-3; travel += 20e-6) {
+  for (int i = 0; i < 500; ++i) {
+    const double travel = 20e-6 * i;
     const auto amounts = AmountsAt(*model, OccurrenceId(1), travel);
     EXPECT_EQ(amounts[0], amounts[1]);
     at = amounts[0] > most ? travel : at;
