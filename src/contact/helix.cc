@@ -162,7 +162,7 @@ HelixDistance CalcHelixDistance(const Helix& helix, const HelixPoint& at, double
 double CalcThreadOverlap(const Helix& helix, const Helix& other, const Mat3& R,
                          const Vec3& p) noexcept {
   constexpr double kSamePitch = 0.02;  // Of it: what fits of meshes may be wrong by. A choice.
-  constexpr double kSteepest = 0.2;    // [rad] a pitch's rise leans by less. A choice.
+  constexpr double kSteepest = 0.2;    // [rad]: flanks that lean by more face others. A choice.
   if (helix.outward == other.outward || helix.sense != other.sense ||
       std::abs(helix.pitch - other.pitch) > kSamePitch * helix.pitch) {
     return 0;

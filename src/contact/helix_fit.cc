@@ -8,229 +8,12 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "base/units.h"
-#include "spatial/box.h"
+#include "contact/helix_axes.h"
+#include "contact/helix_profile.h"
 
 namespace hvas::contact {
 namespace {
-
-using Vec2 = Eigen::Vector2d;
-
-constexpr std::size_t kMaxAxes = 8;  // Those of the most area are looked at. A choice.
-
-struct Axis {
-  Vec3 origin{Vec3::Zero()};
-  Vec3 direction{Vec3::UnitZ()};
-  double area{0};
-};
-
-/** A vertex of a mesh with the mean of normals around it. What each of these triangles is wrong by,
- as it is flat, cancels out. */
-struct SurfacePoint {
-  Vec3 p{Vec3::Zero()};
-  Vec3 n{Vec3::Zero()};  // Not unit: as long as the area around it.
-  double area{0};
-  bool is_freeform{false};
-};
-
-double CalcArea(const Mesh& mesh, std::uint32_t t) {
-  const auto& v = mesh.triangles[t];
-  const Vec3& a = mesh.vertices[v[0]];
-  return 0.5 * (mesh.vertices[v[1]] - a).cross(mesh.vertices[v[2]] - a).norm();
-}
-
-/** So many of them, evenly, or all where there are no more. */
-template <typename T>
-std::vector<T> Thinned(const std::vector<T>& all, std::size_t most) {
-  if (all.size() <= most) {
-    return all;
-  }
-  std::vector<T> kept;
-  for (std::size_t i = 0; i < most; ++i) {
-    kept.push_back(all[i * all.size() / most]);
-  }
-  return kept;
-}
-
-/** The points of a mesh: one for each vertex and each direction in which triangles around it look,
- as there are several at an edge. */
-std::vector<SurfacePoint> ListPoints(const Mesh& mesh, const std::vector<spatial::Surface>& faces) {
-  constexpr double kAlike = 0.9;  // Cosine: 26 degrees. A choice.
-  std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      around[v].push_back(t);
-    }
-  }
-  std::vector<SurfacePoint> points;
-  for (std::size_t v = 0; v < around.size(); ++v) {
-    const std::size_t first = points.size();
-    for (const std::uint32_t t : around[v]) {
-      const Vec3 n = mesh.NormalOf(t);
-      const double area = CalcArea(mesh, t) / 3;
-      const auto alike = std::find_if(
-          points.begin() + static_cast<std::ptrdiff_t>(first), points.end(),
-          [&n](const SurfacePoint& point) { return point.n.dot(n) > kAlike * point.n.norm(); });
-      SurfacePoint& point = alike != points.end() ? *alike : points.emplace_back();
-      point.p = mesh.vertices[v];
-      point.n += area * n;
-      point.area += area;
-      point.is_freeform =
-          point.is_freeform || faces[mesh.face[t]].kind == spatial::SurfaceKind::kFreeform;
-    }
-  }
-  return points;
-}
-
-/** The axes of the faces of revolution, each once, those with the most area first. */
-std::vector<Axis> ListAxes(const Mesh& mesh, const std::vector<spatial::Surface>& faces,
-                           double size) {
-  constexpr double kSameDirection = 2e-3;  // [rad]: a choice.
-  constexpr double kSamePlace = 2e-3;      // Of the part's size: a choice.
-  std::vector<double> area(faces.size(), 0.0);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    area[mesh.face[t]] += CalcArea(mesh, t);
-  }
-  std::vector<Axis> axes;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const spatial::Surface& face = faces[f];
-    if (face.kind != spatial::SurfaceKind::kCylinder && face.kind != spatial::SurfaceKind::kCone) {
-      continue;
-    }
-    const auto same = std::find_if(axes.begin(), axes.end(), [&](const Axis& axis) {
-      const Vec3 d = face.origin - axis.origin;
-      return axis.direction.cross(face.axis).norm() < kSameDirection &&
-             axis.direction.cross(d).norm() < kSamePlace * size;
-    });
-    if (same == axes.end()) {
-      axes.push_back({face.origin, face.axis, area[f]});
-    } else {
-      same->area += area[f];
-    }
-  }
-  std::stable_sort(axes.begin(), axes.end(),
-                   [](const Axis& a, const Axis& b) { return a.area > b.area; });
-  axes.resize(std::min(axes.size(), kMaxAxes));
-  return axes;
-}
-
-/** The axis of the screw motion that moves most of the freeform faces along themselves: with its
- velocity c + w x p, (p x n) . w + n . c is zero there (Pottmann and Wallner, Computational Line
- Geometry, 2001, ch. 4). What does not obey counts for less and less. None where there are hardly
- any freeform faces. */
-std::optional<Axis> FindScrewAxis(const std::vector<SurfacePoint>& points,
-                                  const spatial::Box& box) {
-  constexpr std::size_t kLeast = 200;  // Points: fewer are no thread.
-  constexpr std::size_t kMost = 4000;  // Points that are looked at.
-  constexpr int kSteps = 40;           // Of them, half with the wider of the two scales.
-  constexpr double kWide = 0.02;       // Residuals that count for a quarter.
-  constexpr double kNarrow = 0.002;    // All are choices.
-  std::vector<const SurfacePoint*> freeform;
-  for (const SurfacePoint& point : points) {
-    if (point.is_freeform) {
-      freeform.push_back(&point);
-    }
-  }
-  if (freeform.size() < kLeast) {
-    return std::nullopt;
-  }
-  const double size = box.size().norm();
-  std::vector<std::pair<Vec6, double>> rows;  // With the area.
-  for (const SurfacePoint* const at : Thinned(freeform, kMost)) {
-    const SurfacePoint& point = *at;
-    const Vec3 p = (point.p - box.centre()) / size;
-    Vec6 row;
-    row << p.cross(point.n) / point.area, point.n / point.area;
-    rows.emplace_back(row, point.area);
-  }
-  Vec6 screw = Vec6::Zero();
-  for (int i = 0; i < kSteps; ++i) {
-    const double scale = i < kSteps / 2 ? kWide : kNarrow;
-    const double turning = screw.head<3>().norm();
-    Mat6 matrix = Mat6::Zero();
-    for (const auto& [row, area] : rows) {
-      const double residual = turning > 0 ? row.dot(screw) / (turning * scale) : 0;
-      const double weight = area / ((1 + residual * residual) * (1 + residual * residual));
-      matrix += weight * row * row.transpose();
-    }
-    screw = Eigen::SelfAdjointEigenSolver<Mat6>(matrix).eigenvectors().col(0);
-  }
-  const Vec3 turning = screw.head<3>();
-  if (!(turning.norm() > 1e-6)) {
-    return std::nullopt;
-  }
-  const Vec3 origin = box.centre() + turning.cross(screw.tail<3>()) / turning.squaredNorm() * size;
-  return Axis{origin, turning.normalized(), 0};
-}
-
-/** The pitch that a thread about an axis has if the point is on one, with the sign of its sense; 0
- where the point tells none. */
-double CalcPitch(const SurfacePoint& point, const Axis& axis) {
-  constexpr double kFlat = 0.1;    // Cosine: less along the axis tells no pitch.
-  constexpr double kLevel = 2e-3;  // Tangent of the rise: less is a surface of revolution.
-  // Both are choices: threads rise by a hundredth at least, and their flanks lean.
-  const Vec3 around = axis.direction.cross(point.p - axis.origin);  // As long as the radius.
-  const double along = point.n.dot(axis.direction);
-  const double turned = point.n.dot(around);
-  const double radius = around.norm();
-  const bool tells = std::abs(along) > kFlat * point.area &&
-                     std::abs(turned) > kLevel * radius * std::abs(along) &&
-                     std::abs(turned) < radius * std::abs(along);
-  return tells ? -units::kTurn * turned / along : 0;
-}
-
-/** The pitch around which the most area is, and that area. */
-std::pair<double, double> FindPitch(const std::vector<SurfacePoint>& points, const Axis& axis) {
-  constexpr double kWidest = 1.3;                  // Largest pitch over the least one. A choice.
-  std::vector<std::pair<double, double>> pitches;  // With their area.
-  for (const SurfacePoint& point : points) {
-    const double pitch = CalcPitch(point, axis);
-    if (pitch != 0) {
-      pitches.emplace_back(pitch, point.area);
-    }
-  }
-  std::sort(pitches.begin(), pitches.end());
-  // Sums of a window's area, and of its area times the pitch.
-  double area = 0;
-  double moment = 0;
-  std::pair<double, double> best{0, 0};
-  const auto is_together = [](double a, double b) {
-    return a * b > 0 &&
-           std::max(std::abs(a), std::abs(b)) <= kWidest * std::min(std::abs(a), std::abs(b));
-  };
-  for (std::size_t begin = 0, end = 0; end < pitches.size(); ++end) {
-    area += pitches[end].second;
-    moment += pitches[end].second * pitches[end].first;
-    for (; !is_together(pitches[begin].first, pitches[end].first); ++begin) {
-      area -= pitches[begin].second;
-      moment -= pitches[begin].second * pitches[begin].first;
-    }
-    if (area > best.second) {
-      best = {moment / area, area};
-    }
-  }
-  return best;
-}
-
-/** A vertex in the coordinates of a helix. */
-struct Place {
-  double z{0};  // Along the axis at azimuth zero, not reduced to a pitch.
-  double r{0};
-  double height{0};
-};
-
-Place PlaceOf(const Helix& helix, const Vec3& p) {
-  const HelixPoint at = Locate(helix, p);
-  const double azimuth = std::atan2(at.sine, at.cosine);
-  return {at.height - helix.sense * helix.pitch * azimuth / units::kTurn, at.radius, at.height};
-}
-
-double Reduced(double z, double pitch) {
-  const double reduced = z - pitch * std::floor(z / pitch);
-  return reduced < pitch ? reduced : 0.0;
-}
 
 /** How far vertices of the same height on the profile are from having the same radius [m^2]. */
 double CalcSpread(const Helix& helix, const std::vector<Vec3>& points) {
@@ -242,8 +25,8 @@ double CalcSpread(const Helix& helix, const std::vector<Vec3>& points) {
 
   std::array<Bin, kSpreadBins> bins;
   for (const Vec3& p : points) {
-    const Place place = PlaceOf(helix, p);
-    const double z = Reduced(place.z, helix.pitch) / helix.pitch * kSpreadBins;
+    const HelixPlace place = PlaceOf(helix, p);
+    const double z = ReducedToPitch(place.z, helix.pitch) / helix.pitch * kSpreadBins;
     const auto i = std::min(static_cast<std::size_t>(z), kSpreadBins - 1);
     const double along = z - static_cast<double>(i);
     Bin& bin = bins[i];
@@ -325,164 +108,10 @@ void SearchPitch(const std::vector<Vec3>& points, Helix* helix) {
   helix->pitch = pitch;
 }
 
-/** The profile by heights in equal steps: what the edges of the mesh draw between two heights.
- Chords of a mesh are nearer to the axis than its vertices, so the furthest counts. */
-class ProfileDrawing {
- public:
-  explicit ProfileDrawing(double pitch)
-      : pitch_(pitch), radius_(kSteps, -std::numeric_limits<double>::infinity()) {}
-
-  void AddEdge(const Place& a, const Place& b) {
-    const Place& first = a.z < b.z ? a : b;
-    const Place& last = a.z < b.z ? b : a;
-    const double step = pitch_ / kSteps;
-    const auto begin = static_cast<long>(std::ceil(first.z / step));
-    const auto end = static_cast<long>(std::floor(last.z / step));
-    for (long i = begin; i <= end; ++i) {
-      const double way = last.z - first.z;
-      const double share = way > 0 ? (static_cast<double>(i) * step - first.z) / way : 0;
-      Raise(i, first.r + share * (last.r - first.r));
-    }
-  }
-
-  /** False where the edges leave a part of the pitch out. */
-  [[nodiscard]] bool is_whole() const {
-    return std::all_of(radius_.begin(), radius_.end(), [](double r) { return std::isfinite(r); });
-  }
-
-  /** Corners between which the profile is straight within a tolerance [m]. */
-  [[nodiscard]] std::vector<HelixCorner> MakeCorners(double tolerance) const {
-    const auto most = std::max_element(radius_.begin(), radius_.end()) - radius_.begin();
-    const auto least = std::min_element(radius_.begin(), radius_.end()) - radius_.begin();
-    const auto from = static_cast<std::size_t>(std::min(most, least));
-    const auto to = static_cast<std::size_t>(std::max(most, least));
-    std::vector<std::size_t> kept;
-    Divide(from, to, tolerance, &kept);
-    Divide(to, from + kSteps, tolerance, &kept);
-    for (const std::size_t forced : {from, to}) {
-      DropStraight(forced, tolerance, &kept);
-    }
-    return Sharpen(kept);
-  }
-
- private:
-  static constexpr std::size_t kSteps = 512;  // A choice: 2.4 um of an M8.
-
-  void Raise(long i, double r) {
-    const auto count = static_cast<long>(kSteps);
-    double& radius = radius_[static_cast<std::size_t>((i % count + count) % count)];
-    radius = std::max(radius, r);
-  }
-
-  [[nodiscard]] Vec2 At(std::size_t i) const {
-    return {static_cast<double>(i) * pitch_ / kSteps, radius_[i % kSteps]};
-  }
-
-  /** Douglas and Peucker's; keeps the first one and what is between. */
-  void Divide(std::size_t from, std::size_t to, double tolerance,
-              std::vector<std::size_t>* kept) const {
-    const Vec2 a = At(from);
-    const Vec2 way = (At(to) - a).normalized();
-    double most = tolerance;
-    std::size_t at = from;
-    for (std::size_t i = from + 1; i < to; ++i) {
-      const Vec2 d = At(i) - a;
-      const double off = std::abs(way.x() * d.y() - way.y() * d.x());
-      if (off > most) {
-        most = off;
-        at = i;
-      }
-    }
-    if (at == from) {
-      kept->push_back(from);
-      return;
-    }
-    Divide(from, at, tolerance, kept);
-    Divide(at, to, tolerance, kept);
-  }
-
-  /** Takes the corner out that was where the division began, if it is none. */
-  void DropStraight(std::size_t step, double tolerance, std::vector<std::size_t>* kept) const {
-    const auto at = std::find(kept->begin(), kept->end(), step);
-    if (kept->size() < 3 || at == kept->end()) {
-      return;
-    }
-    const std::size_t before = at == kept->begin() ? kept->back() - kSteps : *(at - 1);
-    const std::size_t behind = at + 1 == kept->end() ? kept->front() + kSteps : *(at + 1);
-    // Unsigned numbers wrap alike: counted from a pitch up, none is below zero.
-    const Vec2 a = At(before + kSteps);
-    const Vec2 way = (At(behind + kSteps) - a).normalized();
-    const Vec2 d = At(step + kSteps) - a;
-    if (std::abs(way.x() * d.y() - way.y() * d.x()) < tolerance) {
-      kept->erase(at);
-    }
-  }
-
-  /** Corners where the sides' best lines meet, rather than at one of the equal steps. */
-  [[nodiscard]] std::vector<HelixCorner> Sharpen(const std::vector<std::size_t>& kept) const {
-    const std::size_t count = kept.size();
-    std::vector<HelixCorner> corners;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t before = k > 0 ? kept[k - 1] : kept[count - 1] - kSteps;
-      const std::size_t behind = k + 1 < count ? kept[k + 1] : kept[0] + kSteps;
-      // Unsigned numbers wrap alike: heights below zero are counted from a pitch up.
-      const Vec2 at = Meet(before + kSteps, kept[k] + kSteps, behind + kSteps);
-      HelixCorner corner;
-      corner.z = Reduced(at.x(), pitch_);
-      corner.r = at.y();
-      corners.push_back(corner);
-    }
-    std::sort(corners.begin(), corners.end(),
-              [](const HelixCorner& a, const HelixCorner& b) { return a.z < b.z; });
-    const double least = 1e-6 * pitch_;  // Nearer ones are one.
-    const auto last = std::unique(
-        corners.begin(), corners.end(),
-        [least](const HelixCorner& a, const HelixCorner& b) { return b.z - a.z < least; });
-    corners.erase(last, corners.end());
-    return corners;
-  }
-
-  [[nodiscard]] Vec2 Meet(std::size_t before, std::size_t corner, std::size_t behind) const {
-    constexpr std::size_t kLong = 6;  // Steps; a line through fewer is no better. A choice.
-    constexpr double kFar = 2;        // Steps that a corner may move: more is another corner.
-    Vec2 at = At(corner);
-    if (corner - before < kLong || behind - corner < kLong) {
-      return at;
-    }
-    const auto [p, m] = FitLine(before + 1, corner - 1);
-    const auto [q, n] = FitLine(corner + 1, behind - 1);
-    const double cross = m.x() * n.y() - m.y() * n.x();
-    if (std::abs(cross) < 1e-3) {
-      return at;
-    }
-    const Vec2 d = q - p;
-    const Vec2 meet = p + (d.x() * n.y() - d.y() * n.x()) / cross * m;
-    return (meet - at).norm() < kFar * pitch_ / kSteps * 2 ? meet : at;
-  }
-
-  /** A point and the direction of the best line through steps. */
-  [[nodiscard]] std::pair<Vec2, Vec2> FitLine(std::size_t from, std::size_t to) const {
-    Vec2 middle = Vec2::Zero();
-    for (std::size_t i = from; i <= to; ++i) {
-      middle += At(i);
-    }
-    middle /= static_cast<double>(to - from + 1);
-    Vec2 slope = Vec2::Zero();
-    for (std::size_t i = from; i <= to; ++i) {
-      const Vec2 d = At(i) - middle;
-      slope += d.x() * d;
-    }
-    return {middle, slope.normalized()};
-  }
-
-  double pitch_;
-  std::vector<double> radius_;
-};
-
 /** The thread of one pitch about one axis. */
 class HelixFit {
  public:
-  HelixFit(const Mesh& mesh, const std::vector<SurfacePoint>& points, const Axis& axis,
+  HelixFit(const Mesh& mesh, const std::vector<SurfacePoint>& points, const ThreadAxis& axis,
            double pitch)
       : mesh_(mesh), points_(points), axis_(axis) {
     helix_.origin = axis.origin;
@@ -530,7 +159,7 @@ class HelixFit {
     double outward = 0;
     double area = 0;
     for (const SurfacePoint& point : points_) {
-      const double pitch = helix_.sense * CalcPitch(point, axis_);
+      const double pitch = helix_.sense * CalcThreadPitch(point, axis_);
       if (std::abs(pitch - helix_.pitch) > kSame * helix_.pitch) {
         continue;
       }
@@ -647,7 +276,7 @@ class HelixFit {
   template <typename Visit>
   void ForEachTriangle(double low, double high, const Visit& visit) const {
     for (const auto& v : mesh_.triangles) {
-      std::array<Place, 3> places;
+      std::array<HelixPlace, 3> places;
       bool is_in = true;
       for (std::size_t k = 0; k < 3; ++k) {
         places[k] = PlaceOf(helix_, mesh_.vertices[v[k]]);
@@ -682,18 +311,18 @@ class HelixFit {
 
   /** Makes the corners of what is in the present span. False where that is no thread. */
   bool Draw() {
-    ProfileDrawing drawing(helix_.pitch);
+    HelixProfile profile(helix_.pitch);
     ForEachTriangle(helix_.low, helix_.high,
-                    [&](const std::array<Place, 3>& places, const Corners&) {
+                    [&](const std::array<HelixPlace, 3>& places, const Corners&) {
                       for (std::size_t k = 0; k < 3; ++k) {
-                        drawing.AddEdge(places[k], places[(k + 1) % 3]);
+                        profile.AddEdge(places[k], places[(k + 1) % 3]);
                       }
                     });
-    if (!drawing.is_whole()) {
+    if (!profile.is_whole()) {
       return false;
     }
     constexpr double kStraight = 4e-3;  // Of the depth: 4 um of an M8. A choice.
-    helix_.corners = drawing.MakeCorners(kStraight * depth_);
+    helix_.corners = profile.MakeCorners(kStraight * depth_);
     if (helix_.corners.size() < 2) {
       return false;
     }
@@ -701,7 +330,7 @@ class HelixFit {
     off_ = 0;
     helix_.deviation = 0;
     ForEachTriangle(
-        helix_.low, helix_.high, [&](const std::array<Place, 3>& places, const Corners& v) {
+        helix_.low, helix_.high, [&](const std::array<HelixPlace, 3>& places, const Corners& v) {
           for (std::size_t k = 0; k < 3; ++k) {
             off_ = std::max(off_, CalcDeviation(places[k]));
             const Vec3 middle = 0.5 * (mesh_.vertices[v[k]] + mesh_.vertices[v[(k + 1) % 3]]);
@@ -718,7 +347,7 @@ class HelixFit {
     return true;
   }
 
-  [[nodiscard]] double CalcDeviation(const Place& place) const {
+  [[nodiscard]] double CalcDeviation(const HelixPlace& place) const {
     const double azimuth = (place.height - place.z) * helix_.sense / helix_.pitch * units::kTurn;
     const HelixPoint at{place.height, place.r, std::cos(azimuth), std::sin(azimuth)};
     return std::abs(CalcHelixDistance(helix_, at).distance);
@@ -739,7 +368,7 @@ class HelixFit {
 
     std::vector<Slice> slices(count);
     const auto add = [&](const Vec3& p) {
-      const Place place = PlaceOf(helix_, p);
+      const HelixPlace place = PlaceOf(helix_, p);
       const double slice = (place.height - lowest) / step;
       if (slice >= 0 && slice < static_cast<double>(count) && IsBetweenRadii(place.r)) {
         Slice& at = slices[static_cast<std::size_t>(slice)];
@@ -795,7 +424,7 @@ class HelixFit {
 
   const Mesh& mesh_;
   const std::vector<SurfacePoint>& points_;
-  const Axis& axis_;
+  const ThreadAxis& axis_;
   Helix helix_;
   double least_{0}, largest_{0}, depth_{0};
   double off_{0};  ///< Largest distance of a vertex from the helix where it was drawn [m].
@@ -806,22 +435,16 @@ class HelixFit {
 std::vector<Helix> FindHelices(const Mesh& mesh, const std::vector<spatial::Surface>& faces) {
   constexpr double kLeastShare = 2e-3;  // Of the part's area that a thread has. A choice.
   std::vector<Helix> helices;
-  spatial::Box box;
   double area = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    area += CalcArea(mesh, t);
-    box.Add(mesh.vertices[mesh.triangles[t][0]]);
+    area += mesh.CalcArea(t);
   }
-  const std::vector<SurfacePoint> points = ListPoints(mesh, faces);
-  std::vector<Axis> axes = ListAxes(mesh, faces, box.size().norm());
-  if (const auto screw = FindScrewAxis(points, box)) {
-    axes.push_back(*screw);
-  }
-  for (const Axis& axis : axes) {
+  const std::vector<SurfacePoint> points = ListSurfacePoints(mesh, faces);
+  for (const ThreadAxis& axis : ListThreadAxes(mesh, faces, points)) {
     if (helices.size() == kMaxHelices) {
       break;
     }
-    const auto [pitch, flanks] = FindPitch(points, axis);
+    const auto [pitch, flanks] = FindThreadPitch(points, axis);
     if (flanks < kLeastShare * area) {
       continue;
     }

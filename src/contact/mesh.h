@@ -130,6 +130,12 @@ struct Mesh {
     return normals[triangle].full();
   }
 
+  [[nodiscard]] double CalcArea(std::uint32_t triangle) const noexcept {
+    const auto& t = triangles[triangle];
+    const Vec3& a = vertices[t[0]];
+    return 0.5 * (vertices[t[1]] - a).cross(vertices[t[2]] - a).norm();
+  }
+
   [[nodiscard]] TrianglePoint ClosestOn(std::uint32_t triangle, const Vec3& p) const noexcept {
     const auto& t = triangles[triangle];
     return CalcClosestOnTriangle(p, vertices[t[0]], vertices[t[1]], vertices[t[2]]);

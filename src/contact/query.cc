@@ -372,7 +372,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
                static_cast<float>(Reach(sampled, field, X)), choice, &hits);
   const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
-  work_->stats.points_dropped += is_thinned ? 8 * leaf_count - hits.points_tested : 0;
+  work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
   work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated;
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;

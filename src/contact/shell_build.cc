@@ -430,10 +430,9 @@ class TreeBuilder {
 double ChooseSpacing(const Mesh& mesh) {
   spatial::Box box;
   double area = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3& a = mesh.vertices[t[0]];
-    box.Add(a);
-    area += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    box.Add(mesh.vertices[mesh.triangles[t][0]]);
+    area += mesh.CalcArea(t);
   }
   return std::max({box.size().norm() / kSpacingsAcross, std::sqrt(area / kMaxFaceSamples), 20e-6});
 }

@@ -1,14 +1,13 @@
 #include "session/deformable_json.h"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "session/json_values.h"
+#include "haptics/giving_curve.h"
 
 namespace hvas::session {
 namespace {
@@ -20,17 +19,13 @@ using simulation::DeformationSource;
 
 constexpr const char* kDeformablesAttachment = "deformed_parts.json";
 
-Json ToList(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 Json MakeFormJson(const Deformable& part) {
   const DeformationForm& form = part.form;
   return {{"occurrence", part.occurrence.value()},
           {"kind", simulation::ToString(form.kind)},
-          {"origin_m", ToList(form.origin_B)},
-          {"axis", ToList(form.axis_B)},
-          {"aside", ToList(form.aside_B)},
+          {"origin_m", MakeJson(form.origin_B)},
+          {"axis", MakeJson(form.axis_B)},
+          {"aside", MakeJson(form.aside_B)},
           {"length_m", form.length},
           {"range_m", form.range},
           {"across_m", form.across},
@@ -40,7 +35,7 @@ Json MakeFormJson(const Deformable& part) {
 Json MakeSourceJson(const DeformationSource& source) {
   Json one{{"moved", source.moved.value()},
            {"against", source.against.value()},
-           {"out", ToList(source.out_W)},
+           {"out", MakeJson(source.out_W)},
            {"widest_m", source.widest},
            {"own_m", source.own}};
   if (source.curve != nullptr) {
@@ -52,94 +47,70 @@ Json MakeSourceJson(const DeformationSource& source) {
   return one;
 }
 
-/** Takes the numbers of a list of that many; false where it has others. */
-template <typename List>
-bool TakeNumbers(const Json& from, const char* key, List* to) {
-  const Json* list = FieldOf(from, key);
-  if (list == nullptr || !list->is_array() || list->size() != to->size()) {
-    return false;
-  }
-  for (std::size_t i = 0; i < to->size(); ++i) {
-    if (!(*list)[i].is_number()) {
-      return false;
-    }
-    (*to)[static_cast<decltype(to->size())>(i)] = (*list)[i].get<double>();
-  }
-  return true;
-}
-
-bool TakeVector(const Json& from, const char* key, Vec3* to) {
-  std::array<double, 3> numbers{};
-  const bool is_read = TakeNumbers(from, key, &numbers);
-  *to = Vec3(numbers[0], numbers[1], numbers[2]);
-  return is_read;
-}
-
-/** Takes a list of any length. */
-bool TakeList(const Json& from, const char* key, std::vector<double>* to) {
-  const Json* list = FieldOf(from, key);
-  to->resize(list != nullptr && list->is_array() ? list->size() : 0);
-  return TakeNumbers(from, key, to);
-}
-
-bool TakeOccurrence(const Json& from, const char* key, const product::Product& product,
-                    product::OccurrenceId* to) {
-  const std::uint32_t index = IndexOr(from, key, 0xffffffffU);
-  *to = product::OccurrenceId(index);
-  return index < product.occurrences.size();
-}
-
-bool ParseSource(const Json& from, const product::Product& product, DeformationSource* source) {
-  bool is_sound = TakeOccurrence(from, "moved", product, &source->moved) &&
-                  TakeOccurrence(from, "against", product, &source->against) &&
-                  TakeVector(from, "out", &source->out_W) && TakeList(from, "own_m", &source->own);
-  source->widest = NumberOr(from, "widest_m", 0);
-  if (FieldOf(from, "given_m") != nullptr) {
+DeformationSource ReadSource(const Json& from, const product::Product& product, JsonFields* all) {
+  JsonFields fields(from);
+  DeformationSource source;
+  const std::size_t count = product.occurrences.size();
+  fields.IdBelow("moved", count, &source.moved);
+  fields.IdBelow("against", count, &source.against);
+  fields("out", source.out_W);
+  fields("widest_m", source.widest);
+  fields("own_m", source.own);
+  if (fields.has("given_m")) {
     auto curve = std::make_shared<haptics::GivingCurve>();
-    is_sound = is_sound && TakeList(from, "given_m", &curve->given);
-    curve->spacing = NumberOr(from, "spacing_m", 0);
-    curve->compression = NumberOr(from, "compression_m", 0);
-    is_sound = is_sound && curve->spacing > 0;
-    if (FlagOr(from, "is_pressed", false)) {
+    bool is_pressed = false;
+    fields("spacing_m", curve->spacing);
+    fields("given_m", curve->given);
+    fields("compression_m", curve->compression);
+    fields("is_pressed", is_pressed);
+    if (!(curve->spacing > 0)) {
+      fields.Refuse("spacing_m");
+    }
+    if (is_pressed) {
       curve->pressed = {0, 0};  // Of its forces nothing is needed.
     }
-    source->curve = std::move(curve);
+    source.curve = std::move(curve);
   }
-  return is_sound;
+  all->Take(fields);
+  return source;
 }
 
-bool ParseDeformable(const Json& from, const product::Product& product, std::size_t index,
-                     Deformable* part) {
-  DeformationForm& form = part->form;
-  const std::string kind = TextOr(from, "kind", "");
-  bool is_sound = false;
-  for (int k = 0; k <= static_cast<int>(DeformationKind::kShift); ++k) {
-    if (kind == simulation::ToString(static_cast<DeformationKind>(k))) {
-      form.kind = static_cast<DeformationKind>(k);
-      is_sound = true;
+/** @param index  Of the part in the list: it stands on parts before it. */
+Deformable ReadDeformable(const product::Product& product, std::size_t index, JsonFields* fields) {
+  Deformable part;
+  DeformationForm& form = part.form;
+  fields->IdBelow("occurrence", product.occurrences.size(), &part.occurrence);
+  (*fields)("kind", form.kind, simulation::kDeformationNames);
+  (*fields)("origin_m", form.origin_B);
+  (*fields)("axis", form.axis_B);
+  (*fields)("aside", form.aside_B);
+  (*fields)("length_m", form.length);
+  (*fields)("range_m", form.range);
+  (*fields)("across_m", form.across);
+  (*fields)("shares", form.shares);
+  (*fields)("free_m", part.free);
+  (*fields)("sign", part.sign);
+  for (const Json& one : fields->Array("below")) {
+    if (!one.is_number_unsigned() || one.get<std::size_t>() >= index) {
+      fields->Refuse("below");
+      break;
     }
+    part.below.push_back(one.get<std::size_t>());
   }
-  is_sound =
-      is_sound && TakeOccurrence(from, "occurrence", product, &part->occurrence) &&
-      TakeVector(from, "origin_m", &form.origin_B) && TakeVector(from, "axis", &form.axis_B) &&
-      TakeVector(from, "aside", &form.aside_B) && TakeNumbers(from, "range_m", &form.range) &&
-      TakeNumbers(from, "across_m", &form.across) && TakeNumbers(from, "shares", &form.shares);
-  form.length = NumberOr(from, "length_m", 0);
-  part->free = NumberOr(from, "free_m", 0);
-  part->sign = NumberOr(from, "sign", 1);
-  const Json* below = FieldOf(from, "below");
-  for (const Json& one : below != nullptr ? *below : Json::array()) {
-    if (!one.is_number_unsigned() || one.get<std::uint64_t>() >= index) {
-      return false;
-    }
-    part->below.push_back(one.get<std::size_t>());
+  for (const Json& one : fields->Array("sources")) {
+    part.sources.push_back(ReadSource(one, product, fields));
   }
-  const Json* sources = FieldOf(from, "sources");
-  for (const Json& one : sources != nullptr ? *sources : Json::array()) {
-    is_sound = is_sound && ParseSource(one, product, &part->sources.emplace_back());
+  // A damaged record may have numbers that are none.
+  const Vec3 vectors = form.origin_B + form.axis_B + form.aside_B;
+  const double numbers = form.length + form.range[0] + form.range[1] + form.across[0] +
+                         form.across[1] + form.shares[0] + form.shares[1] + part.free + part.sign;
+  if (!(form.length > 0) || !vectors.allFinite() || !std::isfinite(numbers)) {
+    fields->Refuse("length_m");
   }
-  const bool has_place = form.kind != DeformationKind::kShift || !part->sources.empty();
-  return is_sound && form.length > 0 && has_place;
+  if (form.kind == DeformationKind::kShift && part.sources.empty()) {
+    fields->Refuse("sources");
+  }
+  return part;
 }
 
 }  // namespace
@@ -187,11 +158,11 @@ Result<std::vector<Deformable>> ReadDeformables(const product::Product& product,
     return parts;
   }
   for (const Json& one : list) {
-    Deformable part;
-    if (!ParseDeformable(one, product, parts.size(), &part)) {
+    JsonFields fields(one);
+    parts.push_back(ReadDeformable(product, parts.size(), &fields));
+    if (!fields.refused().empty()) {
       return std::vector<Deformable>();  // Others may stand on it.
     }
-    parts.push_back(std::move(part));
   }
   return parts;
 }

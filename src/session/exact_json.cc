@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace hvas::session {
 namespace {
@@ -102,6 +103,24 @@ void JsonFields::operator()(const char* name, std::string& value) {
     return;
   }
   value = field->get<std::string>();
+}
+
+void JsonFields::operator()(const char* name, std::array<double, 2>& value) {
+  std::array<double, 2> v{};
+  if (Numbers(name, &v)) {
+    value = v;
+  }
+}
+
+void JsonFields::operator()(const char* name, std::vector<double>& value) {
+  std::vector<double> numbers;
+  for (const Json& one : Array(name)) {
+    if (!ReadNumber(one, &numbers.emplace_back())) {
+      Refuse(name);
+      return;
+    }
+  }
+  value = std::move(numbers);
 }
 
 void JsonFields::operator()(const char* name, Vec3& value) {

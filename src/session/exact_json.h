@@ -33,6 +33,8 @@ class JsonFields {
   void operator()(const char* name, double& value);
   void operator()(const char* name, bool& value);
   void operator()(const char* name, std::string& value);
+  void operator()(const char* name, std::array<double, 2>& value);
+  void operator()(const char* name, std::vector<double>& value);
   void operator()(const char* name, Vec3& value);
   void operator()(const char* name, Quat& value);
   void operator()(const char* name, spatial::Pose& value);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "fits/pressed_parts.h"
 #include "mates/elastic_parts.h"
@@ -192,12 +193,10 @@ class Lister {
     if (give.curve == nullptr || step == nullptr) {
       return;
     }
-    DeformationSource source;
-    source.moved = give.moved;
-    source.against = give.moved == give.flexible ? give.other : give.flexible;
-    source.out_W = step->extraction_W;
-    source.widest = give.width > 0 ? give.width : give.depth;
-    source.curve = give.curve;
+    const DeformationSource source{
+        give.moved,         give.moved == give.flexible ? give.other : give.flexible,
+        step->extraction_W, give.width > 0 ? give.width : give.depth,
+        give.curve,         {}};
     const Part& part = product_.part_of(give.flexible);
     if (give.kind == FlexibleKind::kRetainingRing) {
       AddRing({give.flexible, MakeRingForm(part, FindRingForm(part)), 0, 1, {}, {}}, source);
@@ -244,14 +243,8 @@ class Lister {
       }
       deformable.form.shares = {pair.growth[0] / most, pair.growth[1] / most};
     }
-    DeformationSource source;
-    source.moved = pair.moved;
-    source.against = pair.against;
-    source.out_W = step->extraction_W;
-    source.widest = pair.compression;
-    source.curve = pair.curve;
-    source.own = {0, most};  // It yields, but its hole is as narrow as it is.
-    AddRing(std::move(deformable), source);
+    // It yields, but its hole is as narrow as it is.
+    AddRing(std::move(deformable), SourceOf(pair, *step, {0, most}));
   }
 
   void AddPressed(const PressedPair& pair) {
@@ -269,16 +262,13 @@ class Lister {
       const spatial::Pose& X_WB = product_.occurrences[id.index()].X_WB;
       const double sign = (X_WB.q() * elastic.axis_B).dot(to_presser_W) > 0 ? 1 : -1;
       DeformationForm form = MakePressForm(product_.part_of(id), elastic, sign * elastic.axis_B);
-      DeformationSource source;
-      source.moved = pair.moved;
-      source.against = pair.against;
-      source.out_W = step->extraction_W;
-      source.widest = pair.compression;
-      source.curve = pair.curve;
-      source.own = MakeOwnTable(pair, k);
       const std::vector<std::size_t> carried = below;
-      below.push_back(AddPress(
-          {id, form, std::max(0.0, elastic.free_size - elastic.length), -1, {source}, {}}));
+      below.push_back(AddPress({id,
+                                form,
+                                std::max(0.0, elastic.free_size - elastic.length),
+                                -1,
+                                {SourceOf(pair, *step, MakeOwnTable(pair, k))},
+                                {}}));
       if (!carried.empty()) {
         form.kind = DeformationKind::kShift;
         DeformationSource place;
@@ -295,6 +285,13 @@ class Lister {
  private:
   static bool Has(const std::vector<OccurrenceId>& ids, OccurrenceId id) {
     return std::find(ids.begin(), ids.end(), id) != ids.end();
+  }
+
+  /** @param own  DeformationSource::own. */
+  static DeformationSource SourceOf(const PressedPair& pair, const SequenceStep& step,
+                                    std::vector<double> own) {
+    return {pair.moved,       pair.against, step.extraction_W,
+            pair.compression, pair.curve,   std::move(own)};
   }
 
   /** Whether a sleeve's free form is in the list. */

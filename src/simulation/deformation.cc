@@ -127,28 +127,6 @@ double CalcGivenAt(const DeformationSource& source, double along) {
 
 }  // namespace
 
-std::string_view ToString(DeformationKind kind) {
-  switch (kind) {
-    case DeformationKind::kBend:
-      return "bend";
-    case DeformationKind::kFlare:
-      return "flare";
-    case DeformationKind::kRadial:
-      return "radial";
-    case DeformationKind::kOpen:
-      return "open";
-    case DeformationKind::kPress:
-      return "press";
-    case DeformationKind::kCone:
-      return "cone";
-    case DeformationKind::kHelix:
-      return "helix";
-    case DeformationKind::kShift:
-      return "shift";
-  }
-  return "";
-}
-
 Vec3 Deform(const DeformationForm& form, double amount, const Vec3& p_B) {
   if (amount == 0) {
     return p_B;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "haptics/giving_curve.h"
@@ -32,7 +32,13 @@ enum class DeformationKind : std::uint8_t {
   kShift,   ///< A part is carried along an axis by the others of a stack that get longer.
 };
 
-[[nodiscard]] std::string_view ToString(DeformationKind kind);
+/** The names of the kinds, in their order. */
+inline constexpr std::array kDeformationNames{"bend",  "flare", "radial", "open",
+                                              "press", "cone",  "helix",  "shift"};
+
+[[nodiscard]] constexpr const char* ToString(DeformationKind kind) {
+  return kDeformationNames.at(static_cast<std::size_t>(kind));
+}
 
 /** Where and along what a part changes its form, in its frame B. */
 struct DeformationForm {
@@ -60,22 +66,24 @@ struct DeformationForm {
   std::array<double, 2> shares{1, 1};
 };
 
-/** Where a point of a part goes when the part is deformed by an amount [m]. An amount of 0 gives
+/** Where a point of a part goes when the part is deformed by an amount y [m]. An amount of 0 gives
  the point as it is, to the bit.
 
- | kind | where a point goes | source |
- |---|---|---|
- | kBend | aside by y (3 x^2 l - x^3) / (2 l^3), from the root on; y (3 x - l) / (2 l) beyond l | a
- cantilever with a force at its end: Timoshenko, Strength of Materials I |
- | kFlare | likewise, along the radius | as kBend, of each strip of the wall |
- | kRadial | along the radius, linear between the inner and the outer radius | a choice |
- | kOpen | radius r to r + y, angle from the back by r_m / (r_m + y): round, and as long as it was,
- so the gap opens by 2 pi y | as fits::CalcSpreadStiffness() |
- | kPress | along the axis by the amount times the distance from the end that stays over the length
- | a spring of constant pitch, a block of constant strain | | kCone | along the axis, linear between
- the inner and the outer radius | the disc turns as a rigid section: Almen and Laszlo | | kHelix |
- along the axis, linear in the angle from end to end | constant torsion: Wahl | | kShift | along the
- axis by the amount | |
+ | kind | where a point goes |
+ |---|---|
+ | kBend | aside, from the root on, by y (3 x^2 l - x^3) / (2 l^3); beyond l y (3 x - l) / (2 l) |
+ | kFlare | along the radius, by the same |
+ | kRadial | along the radius, linear between the inner and the outer radius |
+ | kOpen | radius r to r + y, angle from the back by r_m / (r_m + y): the gap opens by 2 pi y |
+ | kPress | along the axis, by y times the share of the length from the end that stays |
+ | kCone | along the axis, linear between the inner and the outer radius |
+ | kHelix | along the axis, linear in the angle from end to end |
+ | kShift | along the axis |
+
+ Sources. kBend and kFlare, strip by strip: a cantilever with a force at its end (Timoshenko,
+ Strength of Materials I). kOpen: round and as long as it was, as fits::CalcSpreadStiffness() has
+ it. kPress: a spring of constant pitch, a block of constant strain. kCone: a section that turns as
+ a rigid one (Almen and Laszlo). kHelix: constant torsion (Wahl). kRadial: a choice.
 
  @param amount  kPress: how much longer, kOpen: how much wider in radius; negative: shorter,
  narrower. */

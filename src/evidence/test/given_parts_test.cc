@@ -3,6 +3,9 @@
 #include "evidence/given_parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -83,6 +86,50 @@ TEST(GivenParts, AreInTheRecordWithTheSameAmountsToTheBit) {
   const double width = model->sequence.gives[0].width;
   EXPECT_NEAR(most, width, 0.15 * width);
   EXPECT_EQ(Describe((*given)[0]).rfind("bends all around by 0.", 0), 0U);
+}
+
+TEST(GivenParts, ADamagedListIsLeftOutOrHasNumbers) {
+  const auto model = CompileCap();
+  const hvas::testing::TemporaryFolder folder;
+  const auto write = [&folder](const session::Json& list, const std::string& name) {
+    const auto file = folder / name;
+    const auto recorder = session::testing::MakeRecorder(file);
+    const std::string text = list.dump();
+    const auto bytes = std::as_bytes(std::span(text));
+    recorder->AddAttachment({"deformed_parts.json", {bytes.begin(), bytes.end()}});
+    EXPECT_TRUE(recorder->Finish().has_value());
+    return file;
+  };
+  const auto sound_file = folder / "sound";
+  const auto recorder = session::testing::MakeRecorder(sound_file);
+  session::AttachDeformables(model->deformables, recorder.get());
+  ASSERT_TRUE(recorder->Finish().has_value());
+  const auto bytes = record::Reader::Open(sound_file)->ReadAttachment("deformed_parts.json");
+  ASSERT_TRUE(bytes.has_value());
+  const auto* text = reinterpret_cast<const char*>(bytes->data());
+  const session::Json sound = session::Json::parse(text, text + bytes->size());
+  const std::vector<session::Json> values{
+      nullptr, "inf", -1, 1e300, session::Json::array({1}), session::Json::object()};
+  const std::vector<spatial::Pose> poses = PosesOf(*model->product);
+  int tried = 0;
+  int left_out = 0;
+  for (const auto& [key, unused] : sound[0].items()) {
+    for (const session::Json& value : values) {
+      SCOPED_TRACE(key + " = " + value.dump());
+      session::Json damaged = sound;
+      damaged[0][key] = value;
+      auto reader = record::Reader::Open(write(damaged, std::to_string(tried++)));
+      ASSERT_TRUE(reader.has_value());
+      const auto read = session::ReadDeformables(*model->product, &*reader);
+      ASSERT_TRUE(read.has_value());
+      left_out += read->empty() ? 1 : 0;
+      const auto amounts = simulation::CalcDeformations(*model->product, *read, poses);
+      for (std::size_t i = 0; i < read->size(); ++i) {
+        EXPECT_TRUE(std::isfinite(amounts[i]));
+      }
+    }
+  }
+  EXPECT_GT(left_out, 3 * tried / 4);
 }
 
 TEST(GivenParts, APictureShowsThePartDeformed) {
