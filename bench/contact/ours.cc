@@ -47,7 +47,7 @@ class Ours : public Method {
   bool is_scalar_;
   std::size_t held_{0};
   std::unique_ptr<contact::Scene> scene_;
-  contact::QueryWorkspace work_;
+  contact::QueryWorkspace work_{contact::QueryMemory::kOfMotion};
   std::vector<FoundContact> found_;
 };
 

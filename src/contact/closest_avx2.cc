@@ -33,32 +33,45 @@ Four Select(Four mask, Four yes, Four no) {
   return _mm256_blendv_pd(no, yes, mask);
 }
 
-// The four triangles from `first` on. What CalcClosestOnTriangle decides one after the other is
-// decided here at once; what it looks at first is selected last.
-void CalcFour(const TriangleCorners* triangles, const std::uint32_t numbers[8], int first,
-              const EightPoints& p, EightClosest* out) {
-  // Twelve numbers of each triangle, read in threes of four.
-  Four n[12];
-  for (int row = 0; row < 12; row += 4) {
-    for (int i = 0; i < 4; ++i) {
-      n[row + i] = _mm256_loadu_pd(triangles[numbers[first + i]].a + row);
-    }
-    Transpose(&n[row], &n[row + 1], &n[row + 2], &n[row + 3]);
-  }
-  const Four* a = n;
-  const Four* b = n + 3;
-  const Four* c = n + 6;
-  const Four ab_ab = n[9];
-  const Four ab_ac = n[10];
-  const Four ac_ac = n[11];
+// Four triangles, coordinate by coordinate, and the dot products of their sides.
+struct FourTriangles {
+  Four a[3];
   Four ab[3];
   Four ac[3];
-  Four ap[3];
-  Four point[3];
+  Four b[3];
+  Four c[3];
+  Four ab_ab;
+  Four ab_ac;
+  Four ac_ac;
+};
+
+// Where results of four triangles go.
+struct FourResults {
+  double* at[3];
+  double* squared;
+  std::int32_t* features;
+};
+
+void CalcSides(FourTriangles* t) {
   for (int k = 0; k < 3; ++k) {
-    point[k] = _mm256_loadu_pd(p.at[k] + first);
-    ab[k] = _mm256_sub_pd(b[k], a[k]);
-    ac[k] = _mm256_sub_pd(c[k], a[k]);
+    t->ab[k] = _mm256_sub_pd(t->b[k], t->a[k]);
+    t->ac[k] = _mm256_sub_pd(t->c[k], t->a[k]);
+  }
+}
+
+// What CalcClosestOnTriangle decides one after the other is decided here at once; what it looks at
+// first is selected last.
+void CalcFour(const FourTriangles& t, const Four point[3], const FourResults& out) {
+  const Four* a = t.a;
+  const Four* b = t.b;
+  const Four* c = t.c;
+  const Four* ab = t.ab;
+  const Four* ac = t.ac;
+  const Four ab_ab = t.ab_ab;
+  const Four ab_ac = t.ab_ac;
+  const Four ac_ac = t.ac_ac;
+  Four ap[3];
+  for (int k = 0; k < 3; ++k) {
     ap[k] = _mm256_sub_pd(point[k], a[k]);
   }
   const Four zero = _mm256_setzero_pd();
@@ -112,11 +125,11 @@ void CalcFour(const TriangleCorners* triangles, const std::uint32_t numbers[8], 
   for (int k = 0; k < 3; ++k) {
     Four q = _mm256_add_pd(_mm256_add_pd(a[k], _mm256_mul_pd(u, ab[k])), _mm256_mul_pd(v, ac[k]));
     q = Select(is_a, a[k], Select(is_b, b[k], Select(is_c, c[k], q)));
-    _mm256_storeu_pd(out->q.at[k] + first, q);
+    _mm256_storeu_pd(out.at[k], q);
     way[k] = _mm256_sub_pd(q, point[k]);
   }
-  _mm256_storeu_pd(out->squared + first, Dot(way, way));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(out->features + first), _mm256_cvttpd_epi32(feature));
+  _mm256_storeu_pd(out.squared, Dot(way, way));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(out.features), _mm256_cvttpd_epi32(feature));
 }
 
 }  // namespace
@@ -124,8 +137,54 @@ void CalcFour(const TriangleCorners* triangles, const std::uint32_t numbers[8], 
 void CalcEightClosestAvx2(const TriangleCorners* triangles, const std::uint32_t numbers[8],
                           int count, const EightPoints& p, EightClosest* out) noexcept {
   for (int first = 0; first < count; first += 4) {
-    CalcFour(triangles, numbers, first, p, out);
+    // Twelve numbers of each triangle, read in threes of four.
+    Four n[12];
+    for (int row = 0; row < 12; row += 4) {
+      for (int i = 0; i < 4; ++i) {
+        n[row + i] = _mm256_loadu_pd(triangles[numbers[first + i]].a + row);
+      }
+      Transpose(&n[row], &n[row + 1], &n[row + 2], &n[row + 3]);
+    }
+    FourTriangles t;
+    Four point[3];
+    for (int k = 0; k < 3; ++k) {
+      t.a[k] = n[k];
+      t.b[k] = n[3 + k];
+      t.c[k] = n[6 + k];
+      point[k] = _mm256_loadu_pd(p.at[k] + first);
+    }
+    t.ab_ab = n[9];
+    t.ab_ac = n[10];
+    t.ac_ac = n[11];
+    CalcSides(&t);
+    CalcFour(t, point,
+             {{out->q.at[0] + first, out->q.at[1] + first, out->q.at[2] + first},
+              out->squared + first,
+              out->features + first});
   }
+}
+
+void CalcFourClosestAvx2(const TriangleArrays& mesh, const std::uint32_t numbers[4],
+                         const double p[3], FourClosest* out) noexcept {
+  const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
+  FourTriangles t;
+  Four* const corners[3] = {t.a, t.b, t.c};
+  for (int corner = 0; corner < 3; ++corner) {
+    Four row[4];
+    for (int i = 0; i < 4; ++i) {
+      row[i] = _mm256_maskload_pd(mesh.vertices[mesh.triangles[numbers[i]][corner]], three);
+    }
+    Transpose(&row[0], &row[1], &row[2], &row[3]);
+    for (int k = 0; k < 3; ++k) {
+      corners[corner][k] = row[k];
+    }
+  }
+  CalcSides(&t);
+  t.ab_ab = Dot(t.ab, t.ab);
+  t.ab_ac = Dot(t.ab, t.ac);
+  t.ac_ac = Dot(t.ac, t.ac);
+  const Four point[3] = {_mm256_set1_pd(p[0]), _mm256_set1_pd(p[1]), _mm256_set1_pd(p[2])};
+  CalcFour(t, point, {{out->at[0], out->at[1], out->at[2]}, out->squared, out->features});
 }
 
 }  // namespace hvas::contact

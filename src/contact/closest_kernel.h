@@ -27,6 +27,29 @@ struct EightClosest {
   std::int32_t features[8];  ///< Numbers of TriangleFeature.
 };
 
+/** The closest points on four triangles to one point. */
+struct FourClosest {
+  double at[3][4];           ///< The points, coordinate by coordinate.
+  double squared[4];         ///< Squares of their distances [m^2].
+  std::int32_t features[4];  ///< Numbers of TriangleFeature.
+};
+
+/** Triangles that share vertices, as plain arrays. */
+struct TriangleArrays {
+  const double (*vertices)[3];
+  const std::uint32_t (*triangles)[3];
+};
+
+/** @param numbers  Which of the triangles; all four exist. */
+using CalcFourClosest = void (*)(const TriangleArrays& mesh, const std::uint32_t numbers[4],
+                                 const double p[3], FourClosest* out) noexcept;
+
+/** The fastest one that the machine has. */
+[[nodiscard]] CalcFourClosest ChooseFourClosest() noexcept;
+
+void CalcFourClosestScalar(const TriangleArrays& mesh, const std::uint32_t numbers[4],
+                           const double p[3], FourClosest* out) noexcept;
+
 /** @param numbers  Which of the triangles; all eight exist.
  @param count  So many of them are wanted; what is said of the others means nothing.
  @param p  The point that is asked for with each of them. */
@@ -42,6 +65,8 @@ void CalcEightClosestScalar(const TriangleCorners* triangles, const std::uint32_
 #ifdef HVAS_HAS_AVX2_KERNEL
 void CalcEightClosestAvx2(const TriangleCorners* triangles, const std::uint32_t numbers[8],
                           int count, const EightPoints& p, EightClosest* out) noexcept;
+void CalcFourClosestAvx2(const TriangleArrays& mesh, const std::uint32_t numbers[4],
+                         const double p[3], FourClosest* out) noexcept;
 #endif
 
 }  // namespace hvas::contact

@@ -479,7 +479,7 @@ void MeasureSlack(const ShapeOptions& options, Shape::Data* data) {
     for (int c = 0; c < 512; ++c) {
       const Index3 cell{c & 7, (c >> 3) & 7, c >> 6};
       const double phi = CalcTrilinear(view, static_cast<int>(block), cell);
-      if (std::abs(phi) > 1.2 * h) {
+      if (std::abs(phi) > static_cast<double>(kSlackVoxels) * h) {
         continue;
       }
       Vec3 p;

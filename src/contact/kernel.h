@@ -8,6 +8,9 @@ namespace hvas::contact {
 
 inline constexpr int kBlockCells = 8;    ///< A side of a block: its nodes are 1.5 kB.
 inline constexpr int kBlockNodes = 729;  ///< 9^3.
+/** Cells whose middle is no further than this from the surface, in voxels, have a measured slack.
+ */
+inline constexpr float kSlackVoxels = 1.2F;
 // The directory has these where there is no block.
 inline constexpr std::int32_t kTopOutside = -1;
 inline constexpr std::int32_t kTopInside = -2;
@@ -135,8 +138,14 @@ struct HitBuffer {
   bool is_truncated{false};
 };
 
+/** A leaf of a shell that may be near a field. */
+struct NearLeaf {
+  std::uint32_t leaf;
+  std::uint32_t place;  ///< In the tree: eight times its parent's number, and which child it is.
+};
+
 struct LeafBuffer {
-  std::uint32_t* leaves{nullptr};
+  NearLeaf* leaves{nullptr};
   std::uint32_t capacity{0};
   std::uint32_t count{0};
   bool is_truncated{false};
@@ -144,23 +153,33 @@ struct LeafBuffer {
 
 /** Selects of every `stride`-th leaf the `points` first ones in the leaf's order. */
 struct LeafChoice {
-  const std::uint32_t* leaves{nullptr};
+  const NearLeaf* leaves{nullptr};
   std::uint32_t count{0};
   std::uint32_t points{8};
   std::uint32_t stride{1};
 };
 
+inline constexpr float kBoundRounding = 1e-7F;  ///< [m] of a bound in single precision, at most.
+
+/** Lower bounds of the distances of a shell's spheres from a field, eight for each node: what the
+ distance was when it was last looked at, and how far the shapes had moved until then. */
+struct BoundView {
+  float* bounds{nullptr};  ///< [m]; null: nothing is known, and nothing remembered.
+  float moved{0};  ///< [m]: how far any sample has moved in the field's frame until now, at most.
+  std::uint32_t turn{0};  ///< Counts the queries that had these bounds.
+};
+
 /** The inner loops for one set of instructions. All give the same bits. RT-safe. */
 struct Kernel {
   /** Appends the leaves of the shell that may have points nearer to the field's surface than the
-   margin. */
+   margin. Leaves out what is further by its bound, and gives bounds to what it finds further. */
   void (*collect)(const ShellView&, const FieldView&, const FloatPose& X_FS, float margin,
-                  LeafBuffer*);
+                  const BoundView&, LeafBuffer*);
   /** Appends those points of the leaves whose distance may be below the margin: those where
    one analytic face decides by their distance from it, the others by the interpolated one less its
-   slack. */
+   slack. Gives bounds to leaves of which it tests all points. */
   void (*test)(const ShellView&, const FieldView&, const FaceView&, const FloatPose& X_FS,
-               float margin, const LeafChoice&, HitBuffer*);
+               float margin, const BoundView&, const LeafChoice&, HitBuffer*);
 };
 
 [[nodiscard]] Kernel ScalarKernel() noexcept;

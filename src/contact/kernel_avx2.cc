@@ -43,6 +43,14 @@ struct Avx2Pack {
 
   static Mask And(Mask a, Mask b) { return _mm256_and_ps(a, b); }
 
+  static Float Select(Mask m, Float yes, Float no) { return _mm256_blendv_ps(no, yes, m); }
+
+  static float Least(Float a) {
+    __m128 b = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
+    b = _mm_min_ps(b, _mm_movehl_ps(b, b));
+    return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));
+  }
+
   static unsigned Bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
 
   static Int Truncate(Float a) { return _mm256_cvttps_epi32(a); }

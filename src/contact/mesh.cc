@@ -222,6 +222,35 @@ void CalcEightClosestScalar(const TriangleCorners* triangles, const std::uint32_
   }
 }
 
+void CalcFourClosestScalar(const TriangleArrays& mesh, const std::uint32_t numbers[4],
+                           const double p[3], FourClosest* out) noexcept {
+  const Vec3 point(p[0], p[1], p[2]);
+  const auto vertex = [&mesh](std::uint32_t number) {
+    const double* v = mesh.vertices[number];
+    return Vec3(v[0], v[1], v[2]);
+  };
+  for (int i = 0; i < 4; ++i) {
+    const std::uint32_t* t = mesh.triangles[numbers[i]];
+    const TrianglePoint closest =
+        CalcClosestOnTriangle(point, vertex(t[0]), vertex(t[1]), vertex(t[2]));
+    for (int k = 0; k < 3; ++k) {
+      out->at[k][i] = closest.q[k];
+    }
+    const Vec3 way = closest.q - point;
+    out->squared[i] = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+    out->features[i] = static_cast<std::int32_t>(closest.feature);
+  }
+}
+
+CalcFourClosest ChooseFourClosest() noexcept {
+#ifdef HVAS_HAS_AVX2_KERNEL
+  if (__builtin_cpu_supports("avx2")) {
+    return &CalcFourClosestAvx2;
+  }
+#endif
+  return &CalcFourClosestScalar;
+}
+
 CalcEightClosest ChooseEightClosest() noexcept {
 #ifdef HVAS_HAS_AVX2_KERNEL
   if (__builtin_cpu_supports("avx2")) {

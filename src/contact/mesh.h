@@ -141,6 +141,13 @@ struct Mesh {
     return CalcClosestOnTriangle(p, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
   }
 
+  /** The vertices and triangles as the kernels take them; valid while the mesh is as it is. */
+  [[nodiscard]] TriangleArrays arrays() const noexcept {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    return {reinterpret_cast<const double(*)[3]>(vertices.data()),
+            reinterpret_cast<const std::uint32_t(*)[3]>(triangles.data())};
+  }
+
   /** True where a face ends at edge k of a triangle, or bends sharply. */
   [[nodiscard]] bool IsRim(std::uint32_t triangle, std::size_t k) const noexcept {
     const std::uint32_t other = neighbour[triangle][k];

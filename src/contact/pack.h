@@ -82,6 +82,18 @@ struct ScalarPack {
     return Map<Mask>([&](int i) { return a.v[i] && b.v[i]; });
   }
 
+  static Float Select(const Mask& m, const Float& yes, const Float& no) {
+    return Map<Float>([&](int i) { return m.v[i] ? yes.v[i] : no.v[i]; });
+  }
+
+  static float Least(const Float& a) {
+    float least = a.v[0];
+    for (int i = 1; i < 8; ++i) {
+      least = a.v[i] < least ? a.v[i] : least;
+    }
+    return least;
+  }
+
   static unsigned Bits(const Mask& m) {
     unsigned bits = 0;
     for (unsigned i = 0; i < 8; ++i) {

@@ -12,6 +12,12 @@ const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::
 // bear. A choice.
 constexpr std::uint32_t kBesideThread = 2;
 constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
+// Of the budget of points one in so many may be hits that are decided at once, and one in so many
+// hits that go through triangles, which takes five times as long; of each pair some more, so that
+// none is left out. docs/algorithms/contact.md says what comes of it.
+constexpr double kPointsPerScreened = 1;
+constexpr double kPointsPerRefined = 4;
+constexpr double kLeastHits = 32;
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
@@ -105,6 +111,16 @@ double AllowedDepth(const Allowance& allowance, const SampleFaces& sample, std::
   return is_own && (face == kNoFace || IsAllowed(other, face)) ? allowance.depth : 0;
 }
 
+// Whether a point is one of those that are kept, where one of `stride` is: of every leaf the most
+// telling ones.
+bool IsKept(const Shell& shell, std::uint32_t point, std::uint32_t stride) {
+  if (stride <= 1) {
+    return true;
+  }
+  return stride <= 8 ? shell.rank[point] < 8 / stride
+                     : shell.rank[point] == 0 && point / 8 % (stride / 8) == 0;
+}
+
 ThreadSamples SamplesOf(const Shape::Data& shape, const Helix* thread, bool is_deep) {
   if (thread == nullptr) {
     return {};
@@ -143,6 +159,9 @@ double ScreenedDistance(const Placed& sampled, const Shell& shell, const Placed&
 }  // namespace
 
 void QueryWorkspace::Data::Clear() noexcept {
+  if (memory != nullptr) {
+    memory->Begin();
+  }
   reducer.Clear();
   leaf_count = 0;
   body_count = 0;
@@ -175,10 +194,10 @@ void BodyQuery::Collect(BodyId id, const Placed& scene) noexcept {
   near.body = id;
   near.threads = FindThreads(id, scene);
   const auto& [ours, theirs, is_deep] = near.threads;
-  CollectLeaves(held_, held_.shape->shell, scene, SamplesOf(*held_.shape, ours, is_deep),
-                &near.first[0], &near.count[0]);
-  CollectLeaves(scene, scene.shape->features, held_, SamplesOf(*scene.shape, theirs, is_deep),
-                &near.first[1], &near.count[1]);
+  CollectLeaves<false>(held_, held_.shape->shell, scene, SamplesOf(*held_.shape, ours, is_deep),
+                       &near);
+  CollectLeaves<true>(scene, scene.shape->features, held_, SamplesOf(*scene.shape, theirs, is_deep),
+                      &near);
 }
 
 ThreadPair BodyQuery::FindThreads(BodyId id, const Placed& scene) const noexcept {
@@ -207,29 +226,39 @@ double BodyQuery::Reach(const Placed& sampled, const Placed& field,
   return margin_ + rounding + sampled.growth() + field.growth();
 }
 
+template <bool kIsReverse>
 void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                              const ThreadSamples& left_out, std::uint32_t* first,
-                              std::uint32_t* count) noexcept {
+                              const ThreadSamples& left_out, NearBody* near) noexcept {
   const RelativePose X(field, sampled);
+  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
+  near->bounds[kSide] = {};
+  if (work_->memory != nullptr) {
+    const SampledPair pair{sampled.shape->serial, field.shape->serial, near->body.value(),
+                           options_.self.value(), kIsReverse};
+    near->bounds[kSide] =
+        work_->memory->Find(pair, X.R, X.p, sampled.half().norm(), 8 * shell.nodes.size());
+  }
   LeafBuffer out;
   out.leaves = work_->leaves.data() + work_->leaf_count;
   out.capacity = static_cast<std::uint32_t>(work_->leaves.size() - work_->leaf_count);
   kernel_.collect(shell.view, field.shape->field.view, X.Single(),
-                  static_cast<float>(Reach(sampled, field, X)), &out);
+                  static_cast<float>(Reach(sampled, field, X)), near->bounds[kSide], &out);
   work_->stats.is_truncated = work_->stats.is_truncated || out.is_truncated;
   if (left_out.number != 0) {
     // What is on its thread is met by its edges, and by what the other has beside its own thread.
-    const auto* kept = std::remove_if(out.leaves, out.leaves + out.count, [&](std::uint32_t leaf) {
-      return left_out.Has(shell.leaf_thread[leaf]);
-    });
+    const auto* kept = std::remove_if(
+        out.leaves, out.leaves + out.count,
+        [&](const NearLeaf& leaf) { return left_out.Has(shell.leaf_thread[leaf.leaf]); });
     out.count = static_cast<std::uint32_t>(kept - out.leaves);
   }
-  *first = static_cast<std::uint32_t>(work_->leaf_count);
-  *count = out.count;
+  near->first[kSide] = static_cast<std::uint32_t>(work_->leaf_count);
+  near->count[kSide] = out.count;
   work_->leaf_count += out.count;
 }
 
 void BodyQuery::Share() noexcept {
+  const auto leaves = static_cast<double>(std::max<std::size_t>(work_->leaf_count, 1));
+  points_per_leaf_ = options_.point_budget / leaves;
   // Whoever needs less than an equal share leaves the rest to the others.
   std::array<std::uint32_t, 2 * kMaxQueryBodies> wanted;
   std::size_t size = 0;
@@ -251,17 +280,59 @@ void BodyQuery::Share() noexcept {
   }
 }
 
-LeafChoice BodyQuery::Choose(std::uint32_t first, std::uint32_t count,
-                             std::uint32_t most) const noexcept {
-  LeafChoice choice;
-  choice.points = most;
-  choice.leaves = work_->leaves.data() + first;
-  choice.count = count;
-  if (most * static_cast<double>(count) > share_) {
-    choice.points = static_cast<std::uint32_t>(std::max(1.0, share_ / count));
-    choice.stride = static_cast<std::uint32_t>(std::max(1.0, std::ceil(count / share_)));
+LeafChoice BodyQuery::Thin(const LeafChoice& all, double points) noexcept {
+  LeafChoice choice = all;
+  if (all.points * static_cast<double>(all.count) > points) {
+    choice.points = static_cast<std::uint32_t>(std::max(1.0, points / all.count));
+    choice.stride = static_cast<std::uint32_t>(std::max(1.0, std::ceil(all.count / points)));
   }
   return choice;
+}
+
+LeafChoice BodyQuery::TestLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
+                                 const RelativePose& X_FS, const LeafChoice& all,
+                                 const BoundView& bounds, HitBuffer* hits) noexcept {
+  const ExactTable& exact = field.shape->exact;
+  const FaceView faces{exact.zones.data(), exact.forms.data(), exact.list_faces.data()};
+  const FloatPose X_single = X_FS.Single();
+  const auto reach = static_cast<float>(Reach(sampled, field, X_FS));
+  const auto test = [&](const LeafChoice& choice) {
+    kernel_.test(shell.view, field.shape->field.view, faces, X_single, reach, bounds, choice, hits);
+  };
+  const LeafChoice choice = Thin(all, share_);
+  const bool is_thinned = choice.points < all.points || choice.stride > 1;
+  const auto whole = static_cast<std::uint32_t>(share_ / (2 * all.points));
+  if (!is_thinned || bounds.bounds == nullptr || whole == 0) {
+    test(choice);
+    return choice;
+  }
+  // Half of the share goes to leaves of which all points are tested, others in each query: those
+  // that are far are then known to be, and soon the rest is no more than the share.
+  const std::uint32_t begin = bounds.turn * whole % all.count;
+  const std::uint32_t end = std::min(begin + whole, all.count);
+  const LeafChoice thinned = Thin(all, share_ / 2);
+  test({all.leaves, begin, thinned.points, thinned.stride});
+  test({all.leaves + begin, end - begin, all.points, 1});
+  test({all.leaves + end, all.count - end, thinned.points, thinned.stride});
+  return thinned;
+}
+
+BodyQuery::HitStrides BodyQuery::CalcStrides(std::span<const Hit> hits, std::uint32_t leaf_count,
+                                             bool are_lists_screened) const noexcept {
+  const auto refined = static_cast<std::size_t>(
+      std::count_if(hits.begin(), hits.end(), [are_lists_screened](const Hit& hit) {
+        return hit.list == kNoList ? hit.face == kUnscreened : !are_lists_screened;
+      }));
+  const double share = points_per_leaf_ * leaf_count;
+  const auto stride_for = [](std::size_t count, double most) {
+    std::uint32_t stride = 1;
+    while (static_cast<double>(count) > std::max(kLeastHits, most) * stride) {
+      stride *= 2;  // So that the same points are kept while their number varies a little.
+    }
+    return stride;
+  };
+  return {stride_for(hits.size() - refined, share / kPointsPerScreened),
+          stride_for(refined, share / kPointsPerRefined)};
 }
 
 void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
@@ -325,6 +396,29 @@ bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
 }
 
 template <bool kIsReverse>
+bool BodyQuery::IsAllowed(const SampleFaces& sample, const Placed& sampled, const Placed& field,
+                          const Vec3& p_F, const Hit& hit) const noexcept {
+  if (allowance_ == nullptr) {
+    return false;
+  }
+  const auto other = kIsReverse ? allowance_->held_faces : allowance_->scene_faces;
+  const double depth = AllowedDepth<kIsReverse>(*allowance_, sample, kNoFace);
+  const double moved = sampled.growth() + field.growth();
+  if (depth == 0 || static_cast<double>(hit.distance) - moved + depth < margin_) {
+    return false;
+  }
+  const ZoneAt zone = FindZone(*field.shape, p_F);
+  if (!zone.is_list() || static_cast<double>(hit.distance) - zone.slack - moved + depth < margin_) {
+    return false;
+  }
+  const ListFaces* list = FacesOfList(*field.shape, zone.payload());
+  return other.empty() || (list != nullptr && std::all_of(list->faces, list->faces + list->count,
+                                                          [&](std::uint32_t face) {
+                                                            return contact::IsAllowed(other, face);
+                                                          }));
+}
+
+template <bool kIsReverse>
 void BodyQuery::ThreadEdges(const Placed& sampled, const Helix& own, const Placed& field,
                             const Helix& other, BodyId body) noexcept {
   if (is_stopped_) {
@@ -364,16 +458,18 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   HitBuffer hits;
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
+  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
   const std::uint32_t most = body.threads.is_deep ? kBesideThread : 8;
-  const LeafChoice choice = Choose(body.first[kIsReverse ? 1 : 0], leaf_count, most);
-  const ExactTable& exact = field.shape->exact;
-  kernel_.test(shell.view, field.shape->field.view,
-               {exact.zones.data(), exact.forms.data(), exact.list_faces.data()}, X.Single(),
-               static_cast<float>(Reach(sampled, field, X)), choice, &hits);
+  const LeafChoice all{work_->leaves.data() + body.first[kSide], leaf_count, most, 1};
+  const LeafChoice choice = TestLeaves(sampled, shell, field, X, all, body.bounds[kSide], &hits);
   const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
-  work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated;
+  const HitStrides strides =
+      CalcStrides({hits.hits, hits.count}, leaf_count,
+                  !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr);
+  work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated ||
+                              std::max(strides.screened, strides.refined) > 1;
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
@@ -382,7 +478,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   RawContact contact;
   contact.body = body.body.value();
   contact.is_reverse = kIsReverse;
-  contact.sparsity = 8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
+  const float sparsity =
+      8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
   FaceFilter filter;
   filter.limit = margin_;
   const auto allowed_depth = [this](const SampleFaces& sample, std::uint32_t face) {
@@ -391,12 +488,19 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
   const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
+  const std::uint32_t least_stride =
+      other_thread != nullptr ? 1 : std::min(strides.screened, strides.refined);
   const std::uint32_t step = Stride(hits.count);
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
     const Hit& hit = hits.hits[at];
     at += step;
     at -= at >= hits.count ? hits.count : 0;
+    const bool is_chosen = choice.points >= 8 || shell.rank[hit.point] < choice.points;
+    if (!is_chosen || !IsKept(shell, hit.point, least_stride)) {
+      ++work_->stats.points_dropped;
+      continue;
+    }
     contact.p = sampled.Sample(shell, hit.point);
     const SampleFaces& faces = shell.faces[hit.point];
     const Vec3 p_F = X * contact.p;
@@ -415,7 +519,13 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       is_at_thread = IsInThread(*other_thread, at_thread, margin_) ||
                      IsNearestThread(*field.shape, *other_thread, p_F);
     }
-    if (!is_at_thread && IsScreened(sampled, field, hit, filter)) {
+    const bool is_screened = !is_at_thread && IsScreened(sampled, field, hit, filter);
+    if (!is_at_thread &&
+        !IsKept(shell, hit.point, is_screened ? strides.screened : strides.refined)) {
+      ++work_->stats.points_dropped;
+      continue;
+    }
+    if (is_screened) {
       if (filter.Drops(hit.face)) {
         continue;
       }
@@ -430,15 +540,22 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
            unallowed > deep + kScreened)) {
         continue;
       }
-      const Vec3& nhat_S = kIsReverse ? towards : gradient;
-      const Vec3& p_S = kIsReverse ? contact.p : p_F;
-      if (distance < margin_ - kScreened && distance > stop_distance_ + kScreened &&
-          !work_->reducer.WouldChange(contact.body, kIsReverse ? own_face : hit.face, distance,
-                                      nhat_S, p_S)) {
-        work_->reducer.Pass();
-        AddToLayer(distance, faces, nhat_S, p_S);
+      if (distance < margin_ - kScreened && distance > stop_distance_ + kScreened) {
+        // What is left of these after reduction is refined then.
+        contact.is_screened = true;
+        contact.is_exact = true;
+        contact.distance = distance;
+        contact.gradient = gradient;
+        contact.allowance = distance - unallowed;
+        contact.point = hit.point;
+        contact.sparsity = sparsity * static_cast<float>(strides.screened);
+        contact.held_face = kIsReverse ? hit.face : own_face;
+        contact.scene_face = kIsReverse ? own_face : hit.face;
+        Add(contact, faces, kIsReverse ? towards : gradient, kIsReverse ? contact.p : p_F);
         continue;
       }
+    } else if (!is_at_thread && IsAllowed<kIsReverse>(faces, sampled, field, p_F, hit)) {
+      continue;
     }
     const Refined r = is_at_thread ? RefineAtThread(*other_thread, at_thread, margin_)
                                    : RefineActual(*field.shape, field.offsets, p_F, hit, filter);
@@ -461,6 +578,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       continue;
     }
     contact.distance = r.distance + contact.allowance;
+    contact.is_screened = false;
+    contact.sparsity = sparsity * static_cast<float>(strides.refined);
     contact.gradient = r.gradient;
     contact.is_exact = r.is_exact;
     contact.point = is_at_thread ? kFixedPoint : hit.point;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "contact/bound_memory.h"
 #include "contact/pool.h"
 #include "contact/reduce.h"
 #include "contact/refine.h"
@@ -41,13 +42,15 @@ struct NearBody {
   BodyId body;
   std::array<std::uint32_t, 2> first{};  ///< Into the leaves: of the held shell, of the body's.
   std::array<std::uint32_t, 2> count{};
+  std::array<BoundView, 2> bounds;
   ThreadPair threads;
 };
 
 struct QueryWorkspace::Data {
   std::vector<Hit> hits = std::vector<Hit>(kMaxQueryHits);
-  std::vector<std::uint32_t> leaves = std::vector<std::uint32_t>(kMaxQueryLeaves);
+  std::vector<NearLeaf> leaves = std::vector<NearLeaf>(kMaxQueryLeaves);
   std::size_t leaf_count{0};
+  std::unique_ptr<BoundMemory> memory;  ///< Null: each query is for itself.
   std::array<NearBody, kMaxQueryBodies> bodies;
   std::size_t body_count{0};
   ContactReducer reducer;
@@ -97,7 +100,10 @@ struct RelativePose {
   RelativePose(const Placed& a, const Placed& b)
       : R(a.R_WC.transpose() * b.R_WC), p(a.R_WC.transpose() * (b.p_WC - a.p_WC)) {}
 
-  [[nodiscard]] Vec3 operator*(const Vec3& q) const { return R * q + p; }
+  // Written out, as compilers leave the product of the library a function.
+  [[nodiscard]] Vec3 operator*(const Vec3& q) const {
+    return R.col(0) * q.x() + R.col(1) * q.y() + R.col(2) * q.z() + p;
+  }
 
   [[nodiscard]] FloatPose Single() const;
 };
@@ -130,9 +136,9 @@ class BodyQuery {
   bool SetMasks(BodyId id, std::uint8_t keep) noexcept;
   /** Finds what is allowed with a body; null where nothing is. */
   [[nodiscard]] const Allowance* FindAllowance(BodyId id) const noexcept;
+  template <bool kIsReverse>
   void CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
-                     const ThreadSamples& left_out, std::uint32_t* first,
-                     std::uint32_t* count) noexcept;
+                     const ThreadSamples& left_out, NearBody* near) noexcept;
   [[nodiscard]] ThreadPair FindThreads(BodyId id, const Placed& scene) const noexcept;
   template <bool kIsReverse>
   void ThreadEdges(const Placed& sampled, const Helix& own, const Placed& field, const Helix& other,
@@ -140,12 +146,29 @@ class BodyQuery {
   /** The margin for the field of the part as drawn in single precision. */
   [[nodiscard]] double Reach(const Placed& sampled, const Placed& field,
                              const RelativePose& X_FS) const noexcept;
-  /** @param most  Points of a leaf. */
-  [[nodiscard]] LeafChoice Choose(std::uint32_t first, std::uint32_t count,
-                                  std::uint32_t most) const noexcept;
+  /** Thins leaves out to a number of points. */
+  [[nodiscard]] static LeafChoice Thin(const LeafChoice& all, double points) noexcept;
   template <bool kIsReverse>
   void Samples(const Placed& sampled, const Shell& shell, const Placed& field, bool has_ignored,
                const NearBody& body) noexcept;
+  /** Tests samples of the leaves of a shell near a body, as many as its share allows. Returns how
+   they were chosen. */
+  LeafChoice TestLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
+                        const RelativePose& X_FS, const LeafChoice& all, const BoundView& bounds,
+                        HitBuffer* hits) noexcept;
+  /** Whether a sample is allowed to be as deep as a hit says, whatever face of a list it meets. */
+  template <bool kIsReverse>
+  [[nodiscard]] bool IsAllowed(const SampleFaces& sample, const Placed& sampled,
+                               const Placed& field, const Vec3& p_F, const Hit& hit) const noexcept;
+
+  /** Of how many hits one is kept: of those that one test decides, and of those to be refined. */
+  struct HitStrides {
+    std::uint32_t screened;
+    std::uint32_t refined;
+  };
+
+  [[nodiscard]] HitStrides CalcStrides(std::span<const Hit> hits, std::uint32_t leaf_count,
+                                       bool are_lists_screened) const noexcept;
   void GroundLeaf(double z_W, std::size_t leaf) noexcept;
   void AddToLayer(double distance, const SampleFaces& faces, const Vec3& nhat_S,
                   const Vec3& p_S) noexcept;
@@ -161,6 +184,7 @@ class BodyQuery {
   const Allowance* allowance_{nullptr};  // Of the body at hand.
   ContactLayer layer_;                   // Of the body at hand, in its centred frame.
   double share_{0};                      // Points for each shell of each body.
+  double points_per_leaf_{0};            // Of the budget, for each near leaf.
   bool is_stopped_{false};
 };
 

@@ -92,35 +92,23 @@ ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_
   return &group;
 }
 
-bool ContactReducer::WouldChange(std::uint32_t body, std::uint32_t scene_face, double distance,
-                                 const Vec3& nhat_S, const Vec3& p_S) const noexcept {
-  const std::size_t slot = SlotOf(KeyOf(body, scene_face, nhat_S));
-  if (slots_[slot] == 0) {
-    return true;
-  }
-  const Group& group = groups_[slots_[slot] - 1U];
-  bool would = distance < group.least - kDeeper;
-  const Reaches reach = ReachesOf(group.u, group.v, p_S);
-  for (std::size_t k = 0; k < kTangents; ++k) {
-    would = would || reach[k] > group.reach[k] + kFurther;
-  }
-  return would;
-}
-
 void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
   ++count_;
-  deepest_ = std::min(deepest_, contact.distance);
   Group* group = Find(KeyOf(contact.body, contact.scene_face, nhat_S), nhat_S);
+  is_full_ = is_full_ || group == nullptr;
+  if (group == nullptr || !contact.is_screened) {
+    deepest_ = std::min(deepest_, contact.distance);
+  }
   if (group == nullptr) {
-    is_full_ = true;
     return;
   }
+  const double more = contact.is_screened ? kFurther : 0;
   const Reaches reach = ReachesOf(group->u, group->v, p_S);
   unsigned further = 0;
   for (std::size_t k = 0; k < kTangents; ++k) {
-    further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;
+    further |= (reach[k] > group->reach[k] + more ? 1U : 0U) << k;
   }
-  const bool is_deeper = contact.distance < group->least;
+  const bool is_deeper = contact.distance < group->least - (contact.is_screened ? kDeeper : 0);
   if (further == 0 && !is_deeper) {
     return;
   }

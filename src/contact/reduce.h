@@ -23,8 +23,9 @@ struct RawContact {
   std::uint32_t scene_face{0};
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
   bool is_exact{false};
-  double allowance{0};  ///< What `distance` has more than the shapes' [m]; see Allowance.
-  float sparsity{1};    ///< Samples of the shell for each one that was tested here.
+  bool is_screened{false};  ///< Distance and gradient are in single precision, to kScreened.
+  double allowance{0};      ///< What `distance` has more than the shapes' [m]; see Allowance.
+  float sparsity{1};        ///< Samples of the shell for each one that was tested here.
 };
 
 /** Reduces a stream of contacts to a few that span it. Contacts are grouped by body, scene face and
@@ -34,17 +35,11 @@ class ContactReducer {
  public:
   void Clear() noexcept;
 
-  /** @param nhat_S  The contact's normal in the scene body, which the groups go by.
+  /** Keeps a contact if it is deeper than its group's deepest or beyond an extreme; a screened one
+   by more than kDeeper or kFurther.
+   @param nhat_S  The contact's normal in the scene body, which the groups go by.
    @param p_S  Its position there. */
   void Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept;
-
-  /** Whether a contact could matter: by more than kDeeper deeper than its group's deepest, or by
-   more than kFurther beyond an extreme. */
-  [[nodiscard]] bool WouldChange(std::uint32_t body, std::uint32_t scene_face, double distance,
-                                 const Vec3& nhat_S, const Vec3& p_S) const noexcept;
-
-  /** Counts a contact that would not. */
-  void Pass() noexcept { ++count_; }
 
   /** Writes the deepest of every group, deepest group first, then extremes, until `out` is full.
    Returns how many were written. */
@@ -53,6 +48,7 @@ class ContactReducer {
   /** How many of the selected are a group's deepest; they come first. */
   [[nodiscard]] std::size_t group_count() const noexcept { return group_count_; }
 
+  /** Returns the deepest of those that are not screened and of those that found no group [m]. */
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
 
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }

@@ -193,21 +193,17 @@ class ZoneList {
  private:
   void Search(const ListDistances::Entries& entries, const FaceFilter& filter, Closest* best,
               double* best_distance) const noexcept {
-    for (std::uint32_t i = entries.begin; i < entries.end; ++i) {
-      const ListedTriangle entry = shape_.exact.Listed(i);
-      if (entry.distance - from_centre_ > *best_distance) {
-        break;
-      }
-      if (entries.face == kNoFace && filter.Drops(shape_.mesh.face[entry.triangle])) {
-        continue;
-      }
-      const TrianglePoint point = shape_.mesh.ClosestOn(entry.triangle, p_);
-      const double squared = (point.q - p_).squaredNorm();
-      if (squared < best->squared) {
-        *best = {squared, point.q, entry.triangle, point.feature};
-        *best_distance = std::sqrt(squared) + 1e-6 * from_centre_;
-      }
-    }
+    ForEachNearTriangle(
+        shape_, entries, p_, from_centre_, *best_distance,
+        [&](std::uint32_t triangle) {
+          return entries.face == kNoFace && filter.Drops(shape_.mesh.face[triangle]);
+        },
+        [&](std::uint32_t triangle, const Vec3& q, TriangleFeature feature, double squared) {
+          if (squared < best->squared) {
+            *best = {squared, q, triangle, feature};
+            *best_distance = std::sqrt(squared) + 1e-6 * from_centre_;
+          }
+        });
   }
 
   const Shape::Data& shape_;

@@ -165,6 +165,47 @@ class ListDistances {
   std::array<std::uint8_t, ListFaces::kMost> order_{};
 };
 
+/** Finds the closest points of those triangles of a list that can be nearer than a limit, in the
+ order of the list, four at a time. RT-safe.
+ @param from_centre  How far p is from the centre of the list's zone [m].
+ @param limit  [m]; `visit` may lower it.
+ @param is_left_out  Says it of a triangle.
+ @param visit  Is told the triangle, its closest point, its feature and the square of the distance.
+ */
+template <typename IsLeftOut, typename Visit>
+void ForEachNearTriangle(const Shape::Data& shape, const ListDistances::Entries& entries,
+                         const Vec3& p, double from_centre, const double& limit,
+                         IsLeftOut is_left_out, Visit visit) {
+  const TriangleArrays mesh = shape.mesh.arrays();
+  std::uint32_t i = entries.begin;
+  while (i < entries.end) {
+    std::uint32_t numbers[4];
+    int count = 0;
+    for (; i < entries.end && count < 4; ++i) {
+      const ListedTriangle entry = shape.exact.Listed(i);
+      if (entry.distance - from_centre > limit) {
+        i = entries.end;
+        break;
+      }
+      if (!is_left_out(entry.triangle)) {
+        numbers[count++] = entry.triangle;
+      }
+    }
+    if (count == 0) {
+      return;
+    }
+    for (int k = count; k < 4; ++k) {
+      numbers[k] = numbers[0];
+    }
+    FourClosest found;
+    shape.closest(mesh, numbers, p.data(), &found);
+    for (int k = 0; k < count; ++k) {
+      visit(numbers[k], Vec3(found.at[0][k], found.at[1][k], found.at[2][k]),
+            static_cast<TriangleFeature>(found.features[k]), found.squared[k]);
+    }
+  }
+}
+
 /** A face's surface, as drawn or as made. */
 class FaceSurface {
  public:

@@ -70,18 +70,15 @@ class NearFaces {
     const ListDistances faces(shape, list, p_);
     double limit = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < faces.size() && faces[k].least <= limit; ++k) {
-      const ListDistances::Entries entries = faces[k];
-      for (std::uint32_t i = entries.begin; i < entries.end; ++i) {
-        const ListedTriangle entry = shape.exact.Listed(i);
-        if (entry.distance - from_centre > limit) {
-          break;
-        }
-        const double distance = (shape.mesh.ClosestOn(entry.triangle, p_).q - p_).norm();
-        if (distance <= limit) {
-          Add(shape.mesh.face[entry.triangle], distance);
-          limit = distance_[0] + kReach * offsets.largest() + 1e-6 * from_centre;
-        }
-      }
+      ForEachNearTriangle(
+          shape, faces[k], p_, from_centre, limit, [](std::uint32_t) { return false; },
+          [&](std::uint32_t triangle, const Vec3&, TriangleFeature, double squared) {
+            const double distance = std::sqrt(squared);
+            if (distance <= limit) {
+              Add(shape.mesh.face[triangle], distance);
+              limit = distance_[0] + kReach * offsets.largest() + 1e-6 * from_centre;
+            }
+          });
     }
     while (count_ > 0 && distance_[count_ - 1] > limit) {
       --count_;

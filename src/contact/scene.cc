@@ -9,7 +9,10 @@
 
 namespace hvas::contact {
 
-QueryWorkspace::QueryWorkspace() : data_(std::make_unique<Data>()) {
+QueryWorkspace::QueryWorkspace(QueryMemory memory) : data_(std::make_unique<Data>()) {
+  if (memory == QueryMemory::kOfMotion) {
+    data_->memory = std::make_unique<BoundMemory>();
+  }
   data_->Clear();
 }
 
@@ -108,7 +111,7 @@ struct Scene::Data {
   }
 
   // Turns the reducer's choice into contacts, the deepest of each group at its very lowest point.
-  void Finish(const Placed& held, const std::optional<BrokenEdges>& edges,
+  void Finish(const Placed& held, const std::optional<BrokenEdges>& edges, double margin,
               QueryWorkspace::Data* work) const noexcept {
     const std::size_t selected = work->reducer.Select(work->raw);
     work->deepest = work->reducer.deepest();
@@ -117,6 +120,9 @@ struct Scene::Data {
     const std::size_t lowest = std::min({work->reducer.group_count(), selected, kMostSlides});
     const std::span<RawContact> raw(work->raw.data(), selected);
     for (std::size_t i = 0; i < selected; ++i) {
+      if (raw[i].is_screened) {
+        RefineScreened(held, margin, &raw[i]);
+      }
       if (i < lowest && raw[i].point != kFixedPoint) {
         MoveToLowest(held, &raw[i]);
       }
@@ -126,6 +132,18 @@ struct Scene::Data {
     work->contact_count = edges.has_value() ? BreakEdges(held, *edges, deepest, raw) : selected;
     for (std::size_t i = 0; i < work->contact_count; ++i) {
       work->contacts[i] = MakeContact(held, raw[i]);
+    }
+  }
+
+  // Gives a screened contact the distance and gradient of the exact faces.
+  void RefineScreened(const Placed& held, double margin, RawContact* raw) const noexcept {
+    const Met met = Meet(held, *raw);
+    FaceFilter near;
+    near.limit = margin;
+    const Refined r = RefineAlone(*met.field.shape, met.field.offsets, met.p, near);
+    if (r.is_exact) {
+      raw->distance = r.distance + raw->allowance;
+      raw->gradient = r.gradient;
     }
   }
 
@@ -327,7 +345,7 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
                   data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, work, &query);
-  data_->Finish(placed, options.broken_edges, &work);
+  data_->Finish(placed, options.broken_edges, options.margin, &work);
 }
 
 bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double tolerance,
@@ -337,7 +355,7 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
   const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, -tolerance, -tolerance, data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, 0), options, work, &query);
-  data_->Finish(placed, {}, &work);
+  data_->Finish(placed, {}, -tolerance, &work);
   return !query.is_stopped();
 }
 

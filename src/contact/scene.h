@@ -75,7 +75,7 @@ struct QueryOptions {
   std::uint32_t point_budget{kDefaultPointBudget};
 
   // The times of docs/realtime.md are measured with it; docs/algorithms/sensitivity.md varies it.
-  static constexpr std::uint32_t kDefaultPointBudget = 4096;
+  static constexpr std::uint32_t kDefaultPointBudget = 2048;
 
   /** Pairs of `ignored` with one body that are told apart, by the bits of a face's mask; the last
    of these and all further ones are one pair. */
@@ -90,12 +90,19 @@ struct QueryStats {
   bool is_truncated{false};         ///< The point budget or a capacity was reached.
 };
 
+/** Whether queries of a workspace remember what is far away. */
+enum class QueryMemory {
+  kNone,
+  kOfMotion  ///< For poses that follow one another closely: same answers sooner, for 2 MB of
+             ///< memory.
+};
+
 /** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */
 class QueryWorkspace {
  public:
   static constexpr int kMaxContacts = 64;  ///< The solver has room for twice as many.
 
-  QueryWorkspace();
+  explicit QueryWorkspace(QueryMemory memory = QueryMemory::kNone);
   ~QueryWorkspace();
   QueryWorkspace(QueryWorkspace&&) noexcept;
   QueryWorkspace& operator=(QueryWorkspace&&) noexcept;

@@ -68,7 +68,8 @@ std::size_t Bytes(const std::vector<T>& v) {
 
 std::size_t Bytes(const Shell& s) {
   return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
-         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order) + Bytes(s.thread) + Bytes(s.leaf_thread);
+         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order) + Bytes(s.rank) + Bytes(s.thread) +
+         Bytes(s.leaf_thread);
 }
 
 // How many blocks a part's box has at its voxel.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -61,9 +62,13 @@ std::array<std::uint8_t, 8> OrderOf(const Shell& shell, std::size_t leaf) {
 
 void OrderLeaves(Shell* shell) {
   shell->order.clear();
+  shell->rank.assign(shell->x.size(), 0);
   for (std::size_t leaf = 0; leaf < shell->leaf_count.size(); ++leaf) {
     const std::array<std::uint8_t, 8> order = OrderOf(*shell, leaf);
     shell->order.insert(shell->order.end(), order.begin(), order.end());
+    for (std::size_t place = 0; place < shell->leaf_count[leaf]; ++place) {
+      shell->rank[8 * leaf + order[place]] = static_cast<std::uint8_t>(place);
+    }
   }
   shell->Bind();
 }
@@ -137,7 +142,7 @@ void Shrink(std::vector<T>&... vectors) {
 // What was appended to one by one has room for more.
 void Shrink(Shell* shell) {
   Shrink(shell->nodes, shell->x, shell->y, shell->z, shell->leaf_count, shell->faces, shell->facing,
-         shell->order, shell->thread, shell->leaf_thread);
+         shell->order, shell->rank, shell->thread, shell->leaf_thread);
   shell->Bind();
 }
 
@@ -191,6 +196,9 @@ FaceForm MakeFaceForm(const spatial::Surface& surface) {
 }
 
 void Shape::Data::Complete() {
+  static std::atomic<std::uint64_t> last_serial{0};
+  serial = ++last_serial;
+  closest = ChooseFourClosest();
   if (exact.list_faces.empty()) {  // A shape from disk has them.
     GroupLists(mesh, &exact);
   }

@@ -95,6 +95,7 @@ struct Shell {
   std::vector<SampleFaces> faces;
   std::vector<float> facing;  ///< Each point's least cosine of its normal against a contact's.
   std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
+  std::vector<std::uint8_t> rank;  ///< Of each point, its place in the order of its leaf; likewise.
   std::size_t point_count{0};
   // Of a shape with threads, Complete fills them: one more than the number of the thread on which a
   // point lies, or all points of a leaf, and kMaxHelices more beyond its span; 0: on none.
@@ -118,10 +119,12 @@ struct Shell {
 
 /** The centred frame C has its origin at the centre of the part's box and the axes of B. */
 struct Shape::Data {
+  std::uint64_t serial{0};  ///< No other shape of the process has it; Complete gives it.
   spatial::Box box_B;
   Vec3 p_BC{Vec3::Zero()};
   double voxel{0};
   Mesh mesh;
+  CalcFourClosest closest{&CalcFourClosestScalar};  ///< Complete chooses it.
   Field field;
   ExactTable exact;
   std::vector<Helix> helices;  ///< Threads that are modelled; mostly none.

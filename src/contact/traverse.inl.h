@@ -13,19 +13,26 @@ class Traversal {
 
  public:
   static void Collect(const ShellView& shell, const FieldView& field, const FloatPose& X_FS,
-                      float margin, LeafBuffer* out) {
-    Traversal(shell, field, {}, X_FS, margin, nullptr).CollectLeaves(out);
+                      float margin, const BoundView& bounds, LeafBuffer* out) {
+    Traversal(shell, field, {}, X_FS, margin, bounds, nullptr).CollectLeaves(out);
   }
 
   static void Test(const ShellView& shell, const FieldView& field, const FaceView& faces,
-                   const FloatPose& X_FS, float margin, const LeafChoice& choice, HitBuffer* out) {
-    Traversal(shell, field, faces, X_FS, margin, out).TestLeaves(choice);
+                   const FloatPose& X_FS, float margin, const BoundView& bounds,
+                   const LeafChoice& choice, HitBuffer* out) {
+    Traversal(shell, field, faces, X_FS, margin, bounds, out).TestLeaves(choice);
   }
 
  private:
   Traversal(const ShellView& shell, const FieldView& field, const FaceView& faces,
-            const FloatPose& X_FS, float margin, HitBuffer* out)
-      : shell_(shell), field_(field), faces_(faces), X_(X_FS), margin_(margin), out_(out) {}
+            const FloatPose& X_FS, float margin, const BoundView& bounds, HitBuffer* out)
+      : shell_(shell),
+        field_(field),
+        faces_(faces),
+        X_(X_FS),
+        margin_(margin),
+        bounds_(bounds),
+        out_(out) {}
 
   void CollectLeaves(LeafBuffer* out) const {
     if (shell_.node_count == 0) {
@@ -36,14 +43,16 @@ class Traversal {
     int size = 0;
     stack[size++] = 0;
     while (size > 0) {
-      const SphereNode& node = shell_.nodes[stack[--size]];
-      unsigned near = NearChildren(node);
+      const std::int32_t number = stack[--size];
+      const SphereNode& node = shell_.nodes[number];
+      unsigned near = NearChildren(node, 8 * number);
       while (near != 0) {
         const int lane = __builtin_ctz(near);
         near &= near - 1;
         const std::int32_t child = node.child[lane];
         if (child < -1 && out->count < out->capacity) {
-          out->leaves[out->count++] = static_cast<std::uint32_t>(-2 - child);
+          out->leaves[out->count++] = {static_cast<std::uint32_t>(-2 - child),
+                                       static_cast<std::uint32_t>(8 * number + lane)};
         } else if (child >= 0 && size < kStack) {
           stack[size++] = child;
         } else if (child != -1) {
@@ -56,7 +65,7 @@ class Traversal {
   void TestLeaves(const LeafChoice& choice) {
     if (choice.points >= 8) {
       for (std::uint32_t i = 0; i < choice.count; i += choice.stride) {
-        const std::uint32_t leaf = choice.leaves[i];
+        const std::uint32_t leaf = choice.leaves[i].leaf;
         const float* x = shell_.x + 8 * leaf;
         const float* y = shell_.y + 8 * leaf;
         const float* z = shell_.z + 8 * leaf;
@@ -64,7 +73,11 @@ class Traversal {
         for (std::uint32_t lane = 0; lane < 8; ++lane) {
           number[lane] = 8 * leaf + lane;
         }
+        least_ = kNoBound;
         TestPoints(P::Load(x), P::Load(y), P::Load(z), number, shell_.leaf_count[leaf]);
+        if (bounds_.bounds != nullptr) {
+          bounds_.bounds[choice.leaves[i].place] = bounds_.moved + (least_ - kBoundRounding);
+        }
       }
       return;
     }
@@ -74,7 +87,7 @@ class Traversal {
     std::uint32_t number[8] = {};
     unsigned size = 0;
     for (std::uint32_t i = 0; i < choice.count; i += choice.stride) {
-      const std::uint32_t leaf = choice.leaves[i];
+      const std::uint32_t leaf = choice.leaves[i].leaf;
       const std::uint32_t count = shell_.leaf_count[leaf];
       for (std::uint32_t k = 0; k < choice.points && k < count; ++k) {
         const std::uint32_t point = 8 * leaf + shell_.order[8 * leaf + k];
@@ -102,11 +115,36 @@ class Traversal {
     }
   }
 
-  // A sphere may hold a hit unless its centre is further away than its radius: by the nearest
-  // coarse node's distance (which changes by at most the way to it) and by the part's box.
-  unsigned NearChildren(const SphereNode& node) const {
+  // Which children of a node may have a hit, by what is known of them from before, and by how far
+  // their spheres are. `place` is that of the first child's bound.
+  unsigned NearChildren(const SphereNode& node, std::int32_t place) const {
+    unsigned open = 0xffU;
+    if (bounds_.bounds != nullptr) {
+      const Float known = P::Load(bounds_.bounds + place);
+      open = P::Bits(P::Less(known, P::Set(bounds_.moved + margin_)));
+      if (open == 0) {
+        return 0;
+      }
+    }
     Float c[3];
     Transform(P::Load(node.x), P::Load(node.y), P::Load(node.z), c);
+    const Float bound = CalcFarBound(c);
+    const Float radius = P::Load(node.radius);
+    const unsigned near = open & P::Bits(P::Less(bound, P::Add(radius, P::Set(margin_))));
+    if (bounds_.bounds != nullptr && near != open) {
+      alignas(32) float least[8];
+      P::Store(P::Sub(P::Sub(bound, radius), P::Set(kBoundRounding)), least);
+      for (unsigned far = open & ~near; far != 0; far &= far - 1) {
+        const int lane = __builtin_ctz(far);
+        bounds_.bounds[place + lane] = bounds_.moved + least[lane];
+      }
+    }
+    return near;
+  }
+
+  // A point is at least as far from the surface as the nearest coarse node's distance (which
+  // changes by at most the way to it) and the part's box say.
+  Float CalcFarBound(const Float* c) const {
     const Float zero = P::Set(0.0F);
     Float to_node = zero;
     Float to_box = zero;
@@ -127,15 +165,25 @@ class Traversal {
       index = P::AddInt(P::MulInt(index, P::SetInt(field_.coarse_count[k])), i);
     }
     const Float phi = P::Gather(field_.coarse, index);
-    const Float bound = P::Max(P::Sub(phi, P::Sqrt(to_node)), P::Sqrt(to_box));
-    const Float reach = P::Add(P::Load(node.radius), P::Set(margin_));
-    return P::Bits(P::Less(bound, reach));
+    return P::Max(P::Sub(phi, P::Sqrt(to_node)), P::Sqrt(to_box));
   }
+
+  static constexpr float kNoBound = 3e38F;  // More than any distance.
 
   struct Sample {
     Float distance;
+    Float middle;  // Of the cell.
     Float gradient[3];
   };
+
+  // The least distance that the points of a sample may have. The slack is measured in cells near
+  // the surface. Elsewhere interpolation errs by 1/4 h^2 over the distance at the most, as a
+  // distance curves by no more than its reciprocal in two directions.
+  Float CalcBandBound(const Sample& s, const Float& slack) const {
+    const Float near = P::Sub(s.distance, slack);
+    const Float far = P::Sub(near, P::Set(0.25F * field_.voxel));
+    return P::Select(P::Less(s.middle, P::Set(kSlackVoxels * field_.voxel)), near, far);
+  }
 
   // Trilinear value and gradient in cells given by block, cell within it and weights.
   Sample Interpolate(const Int& base, const Float* w) const {
@@ -163,6 +211,9 @@ class Traversal {
     const Float dx0 = mix(e[0], P::Sub(e[1], e[0]), w[1]);
     const Float dx1 = mix(e[2], P::Sub(e[3], e[2]), w[1]);
     Sample s;
+    const Float low = P::Add(P::Add(d[0], d[1]), P::Add(d[2], d[3]));
+    const Float high = P::Add(P::Add(d[4], d[5]), P::Add(d[6], d[7]));
+    s.middle = P::Mul(P::Add(low, high), P::Set(0.125F * field_.quantum));
     s.distance = P::Mul(mix(y0, dz, w[2]), scale);
     s.gradient[0] = P::Mul(mix(dx0, P::Sub(dx1, dx0), w[2]), slope);
     s.gradient[1] = P::Mul(mix(dy0, P::Sub(dy1, dy0), w[2]), slope);
@@ -197,6 +248,7 @@ class Traversal {
     const Int top = P::GatherInt(field_.top, block);
     const Mask has = P::And(inside, P::LessInt(P::SetInt(-1), top));
     const unsigned has_bits = P::Bits(has) & used;
+    const Float none = P::Set(kNoBound);  // Unused lanes repeat a point: they change no minimum.
     alignas(32) float position[3][8];
     for (int k = 0; k < 3; ++k) {
       P::Store(p[k], position[k]);
@@ -204,15 +256,20 @@ class Traversal {
     if (has_bits != 0) {
       const Int b = P::MaxInt(top, P::SetInt(0));
       const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), cell), w);
-      const Float limit = P::Add(P::Set(margin_), P::Gather(field_.slack, b));
-      unsigned hits = P::Bits(P::Less(s.distance, limit)) & has_bits;
+      const Float slack = P::Gather(field_.slack, b);
+      const unsigned hits = P::Bits(P::Less(s.distance, P::Add(P::Set(margin_), slack))) & has_bits;
+      if (bounds_.bounds != nullptr) {
+        const Float bound = CalcBandBound(s, slack);
+        least_ = P::Least(P::Select(has, bound, none));
+      }
       if (hits != 0) {
         std::int32_t code[8];
         P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
         PushInBand(Screen(hits, p, code, number), s, position, number);
       }
     }
-    const unsigned on_face = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopInside)))) & used;
+    const Mask in_face_block = P::And(inside, P::LessInt(top, P::SetInt(kTopInside)));
+    const unsigned on_face = P::Bits(in_face_block) & used;
     if (on_face != 0) {
       std::int32_t code[8];
       P::StoreInt(top, code);
@@ -221,11 +278,18 @@ class Traversal {
         const int lane = __builtin_ctz(rest);
         face[lane] = static_cast<std::uint32_t>(kTopFace - code[lane]);
       }
-      ScreenFaces(on_face, face, p, number);
+      const unsigned unsure = ScreenFaces(on_face, face, p, number, bounds_.bounds != nullptr);
+      least_ = unsure != 0 ? -kNoBound : least_;
     }
     const unsigned solid = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopOutside))));
     // Outside the part and in no block is further away than `beyond`.
-    const unsigned rest = used & ~has_bits & ~on_face & (margin_ > field_.beyond ? ~0U : solid);
+    const unsigned nowhere = used & ~has_bits & ~on_face;
+    if (bounds_.bounds != nullptr && nowhere != 0) {
+      const Float far = P::Max(CalcFarBound(p), P::Set(field_.beyond));
+      const float value = P::Least(P::Select(in_face_block, none, P::Select(has, none, far)));
+      least_ = (nowhere & solid) != 0 ? -kNoBound : (value < least_ ? value : least_);
+    }
+    const unsigned rest = nowhere & (margin_ > field_.beyond ? ~0U : solid);
     if (rest != 0) {
       PushCoarse(rest, solid, position, number);
     }
@@ -247,7 +311,8 @@ class Traversal {
       several |= (how == zone::kList && faces_.lists != nullptr ? 1U : 0U) << lane;
     }
     const unsigned others = hits & ~(one | several);
-    return others | ScreenFaces(one, code, p, number) | ScreenLists(several, code, p, number);
+    return others | ScreenFaces(one, code, p, number, false) |
+           ScreenLists(several, code, p, number);
   }
 
   // The lanes of `todo` whose code is that of the first of them.
@@ -263,7 +328,7 @@ class Traversal {
 
   // Of lanes whose code is a face's number; returns those on the axis of theirs.
   unsigned ScreenFaces(unsigned todo, const std::uint32_t* code, const Float* p,
-                       const std::uint32_t* number) {
+                       const std::uint32_t* number, bool keeps_least) {
     unsigned others = 0;
     while (todo != 0) {
       const std::uint32_t face = code[__builtin_ctz(todo)];
@@ -274,6 +339,10 @@ class Traversal {
         continue;
       }
       const Evaluated e = Evaluate(faces_.forms[face], p);
+      for (unsigned rest = keeps_least ? same : 0; rest != 0; rest &= rest - 1) {
+        const float value = e.distance[__builtin_ctz(rest)] - kUnsure;
+        least_ = value < least_ ? value : least_;
+      }
       others |= same & ~e.good;
       for (same &= e.good; same != 0; same &= same - 1) {
         const int lane = __builtin_ctz(same);
@@ -456,6 +525,8 @@ class Traversal {
   FaceView faces_;
   const FloatPose& X_;
   float margin_;
+  BoundView bounds_;
+  float least_{kNoBound};  // Lower bound of the distance of the points tested last [m].
   HitBuffer* out_;
 };
 

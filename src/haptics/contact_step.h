@@ -218,7 +218,7 @@ class ContactStep {
   const MateGuide& guide_;
   const std::size_t hand_;
   Effort effort_;
-  contact::QueryWorkspace workspace_;
+  contact::QueryWorkspace workspace_{contact::QueryMemory::kOfMotion};
   FrictionMemory friction_;
   FreeBodies bodies_;
   ContactPairs pairs_;

@@ -109,16 +109,16 @@ struct Hits {
   Hits(const Kernel& kernel, const Shape& shell, const Shape& field, const FloatPose& X,
        float margin, std::uint32_t points = 8) {
     const Shell& samples = shell.data().shell;
-    std::vector<std::uint32_t> leaves(samples.leaf_count.size());
+    std::vector<NearLeaf> leaves(samples.leaf_count.size());
     LeafBuffer near;
     near.leaves = leaves.data();
     near.capacity = static_cast<std::uint32_t>(leaves.size());
     const FieldView& view = field.data().field.view;
-    kernel.collect(samples.view, view, X, margin, &near);
+    kernel.collect(samples.view, view, X, margin, {}, &near);
     buffer.hits = list.data();
     buffer.capacity = static_cast<std::uint32_t>(list.size());
     const ExactTable& exact = field.data().exact;
-    kernel.test(samples.view, view, {exact.zones.data(), exact.forms.data()}, X, margin,
+    kernel.test(samples.view, view, {exact.zones.data(), exact.forms.data()}, X, margin, {},
                 {near.leaves, near.count, points, points < 4 ? 2U : 1U}, &buffer);
     list.resize(buffer.count);
   }

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "contact/kernel.h"
+#include "spatial/pose.h"
+
+namespace hvas::contact {
+
+/** Two shapes whose distances are remembered: the samples of one in the field of the other. */
+struct SampledPair {
+  std::uint64_t sampled{0};  ///< Serial numbers of the shapes.
+  std::uint64_t field{0};
+  std::uint32_t body{0};  ///< Of the scene.
+  std::uint32_t self{0};  ///< The held part as a body of the scene, where it is one.
+  bool is_reverse{false};
+
+  friend bool operator==(const SampledPair&, const SampledPair&) = default;
+};
+
+/** What queries remember for the ones that follow: how far the parts of a shell were from a field.
+ A part that was d away is not met before the shapes have moved d, so that it need not be looked at
+ until then. Answers are those of a query that remembers nothing; one in a new place is as slow.
+ Fixed size, RT-safe. */
+class BoundMemory {
+ public:
+  BoundMemory();
+
+  /** Begins a query: what it asks for is kept until it ends. */
+  void Begin() noexcept { ++query_; }
+
+  /** Returns the bounds of a pair, moved on to where its shapes are now; empty where there is no
+   room for them.
+   @param R, p  Take the sampled shape's coordinates to the field's.
+   @param extent  No sample is further than this from the origin of its frame [m].
+   @param count  Bounds: eight for each node of the shell. */
+  [[nodiscard]] BoundView Find(const SampledPair& pair, const Mat3& R, const Vec3& p, double extent,
+                               std::size_t count) noexcept;
+
+ private:
+  static constexpr std::size_t kPairs =
+      64;  ///< Remembered; the least used one makes way. A choice.
+  static constexpr std::size_t kMost = 8192;  ///< Bounds of a pair: 50,000 samples. A choice.
+
+  struct Entry {
+    SampledPair pair;
+    Mat3 R{Mat3::Identity()};
+    Vec3 p{Vec3::Zero()};
+    double moved{0};           // [m] since the bounds were cleared.
+    std::uint64_t used_at{0};  // Number of the query; 0: never.
+    std::uint32_t turn{0};
+  };
+
+  [[nodiscard]] std::size_t PlaceOf(const SampledPair& pair) const noexcept;
+
+  std::array<Entry, kPairs> entries_;
+  std::vector<float> bounds_;  // kMost an entry.
+  std::uint64_t query_{0};
+  mutable std::size_t next_{0};  // Where the pair after the last one was: queries ask in one order.
+};
+
+}  // namespace hvas::contact
