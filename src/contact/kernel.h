@@ -128,6 +128,7 @@ struct Hit {
   float gradient[3];  ///< The face's gradient, else the interpolated one, which is not unit.
   std::uint32_t face{kUnscreened};  ///< The one analytic face that decides, where there is one.
   std::uint32_t list{kNoList};      ///< It does so among these.
+  std::uint32_t zone{zone::kFar};   ///< What decides there, as in `zone`, where that is not known.
 };
 
 struct HitBuffer {

@@ -12,12 +12,14 @@ const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::
 // bear. A choice.
 constexpr std::uint32_t kBesideThread = 2;
 constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
-// Of the budget of points one in so many may be hits that are decided at once, and one in so many
-// hits that go through triangles, which takes five times as long; of each pair some more, so that
-// none is left out. docs/algorithms/contact.md says what comes of it.
-constexpr double kPointsPerScreened = 1;
+// Hits that one test does not decide go through the triangles of a list. Of the budget of points
+// one in so many may, with so many triangles for each point of the budget; faces as made are looked
+// for in a list three times. Of each pair some may, so that none is left out.
+// docs/algorithms/contact.md says what comes of it.
 constexpr double kPointsPerRefined = 4;
-constexpr double kLeastHits = 32;
+constexpr double kTrianglesPerPoint = 8;
+constexpr double kScansAsMade = 3;
+constexpr double kLeastHits = 16;
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
@@ -111,15 +113,25 @@ double AllowedDepth(const Allowance& allowance, const SampleFaces& sample, std::
   return is_own && (face == kNoFace || IsAllowed(other, face)) ? allowance.depth : 0;
 }
 
-// Whether a point is one of those that are kept, where one of `stride` is: of every leaf the most
-// telling ones.
-bool IsKept(const Shell& shell, std::uint32_t point, std::uint32_t stride) {
-  if (stride <= 1) {
-    return true;
+// Keeps one hit of `stride`, a power of two: of each leaf the most telling points, and if that
+// leaves none, of some leaves one.
+class HitChoice {
+ public:
+  HitChoice(const Shell& shell, const LeafChoice& tested, std::uint32_t stride)
+      : shell_(shell),
+        points_(std::max(tested.points / stride, 1U)),
+        leaf_stride_(std::max(stride * points_ / tested.points, 1U)) {}
+
+  [[nodiscard]] bool Has(std::uint32_t point) const {
+    return (points_ >= 8 || shell_.rank[point] < points_) &&
+           (leaf_stride_ == 1 || point / 8 % leaf_stride_ == 0);
   }
-  return stride <= 8 ? shell.rank[point] < 8 / stride
-                     : shell.rank[point] == 0 && point / 8 % (stride / 8) == 0;
-}
+
+ private:
+  const Shell& shell_;
+  std::uint32_t points_;
+  std::uint32_t leaf_stride_;
+};
 
 ThreadSamples SamplesOf(const Shape::Data& shape, const Helix* thread, bool is_deep) {
   if (thread == nullptr) {
@@ -317,22 +329,31 @@ LeafChoice BodyQuery::TestLeaves(const Placed& sampled, const Shell& shell, cons
   return thinned;
 }
 
-BodyQuery::HitStrides BodyQuery::CalcStrides(std::span<const Hit> hits, std::uint32_t leaf_count,
-                                             bool are_lists_screened) const noexcept {
-  const auto refined = static_cast<std::size_t>(
-      std::count_if(hits.begin(), hits.end(), [are_lists_screened](const Hit& hit) {
-        return hit.list == kNoList ? hit.face == kUnscreened : !are_lists_screened;
-      }));
-  const double share = points_per_leaf_ * leaf_count;
-  const auto stride_for = [](std::size_t count, double most) {
-    std::uint32_t stride = 1;
-    while (static_cast<double>(count) > std::max(kLeastHits, most) * stride) {
-      stride *= 2;  // So that the same points are kept while their number varies a little.
+std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t leaf_count,
+                                    bool are_lists_screened, const Placed& field) const noexcept {
+  const std::vector<std::uint32_t>& begin = field.shape->exact.list_begin;
+  double count = 0;
+  double triangles = 0;
+  for (const Hit& hit : hits) {
+    const bool is_refined = hit.list == kNoList ? hit.face == kUnscreened : !are_lists_screened;
+    if (!is_refined) {
+      continue;
     }
-    return stride;
-  };
-  return {stride_for(hits.size() - refined, share / kPointsPerScreened),
-          stride_for(refined, share / kPointsPerRefined)};
+    ++count;
+    const std::uint32_t list = hit.list != kNoList ? hit.list : hit.zone & zone::kPayload;
+    if (hit.list != kNoList || (hit.zone & ~zone::kPayload) == zone::kList) {
+      triangles += begin[list + 1] - begin[list];
+    }
+  }
+  triangles *= field.offsets != nullptr ? kScansAsMade : 1;
+  const double share = points_per_leaf_ * leaf_count;
+  std::uint32_t stride =
+      1;  // Doubled, so that the same hits are kept as their number varies a little.
+  while (count > kLeastHits * stride && (kPointsPerRefined * count > share * stride ||
+                                         triangles > kTrianglesPerPoint * share * stride)) {
+    stride *= 2;
+  }
+  return stride;
 }
 
 void BodyQuery::Body(std::size_t i, const Placed& scene) noexcept {
@@ -465,11 +486,11 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
-  const HitStrides strides =
-      CalcStrides({hits.hits, hits.count}, leaf_count,
-                  !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr);
-  work_->stats.is_truncated = work_->stats.is_truncated || is_thinned || hits.is_truncated ||
-                              std::max(strides.screened, strides.refined) > 1;
+  const std::uint32_t stride =
+      CalcStride({hits.hits, hits.count}, leaf_count,
+                 !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr, field);
+  work_->stats.is_truncated =
+      work_->stats.is_truncated || is_thinned || hits.is_truncated || stride > 1;
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
@@ -488,18 +509,16 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
   const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
-  const std::uint32_t least_stride =
-      other_thread != nullptr ? 1 : std::min(strides.screened, strides.refined);
+  const HitChoice tested(shell, choice, 1);
+  const HitChoice refined(shell, choice, stride);
   const std::uint32_t step = Stride(hits.count);
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
     const Hit& hit = hits.hits[at];
     at += step;
     at -= at >= hits.count ? hits.count : 0;
-    const bool is_chosen = choice.points >= 8 || shell.rank[hit.point] < choice.points;
-    if (!is_chosen || !IsKept(shell, hit.point, least_stride)) {
-      ++work_->stats.points_dropped;
-      continue;
+    if (!tested.Has(hit.point)) {
+      continue;  // Of a leaf that was tested whole, to know how far it is.
     }
     contact.p = sampled.Sample(shell, hit.point);
     const SampleFaces& faces = shell.faces[hit.point];
@@ -520,8 +539,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
                      IsNearestThread(*field.shape, *other_thread, p_F);
     }
     const bool is_screened = !is_at_thread && IsScreened(sampled, field, hit, filter);
-    if (!is_at_thread &&
-        !IsKept(shell, hit.point, is_screened ? strides.screened : strides.refined)) {
+    if (!is_at_thread && !is_screened && !refined.Has(hit.point)) {
       ++work_->stats.points_dropped;
       continue;
     }
@@ -548,7 +566,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
         contact.gradient = gradient;
         contact.allowance = distance - unallowed;
         contact.point = hit.point;
-        contact.sparsity = sparsity * static_cast<float>(strides.screened);
+        contact.sparsity = sparsity;
         contact.held_face = kIsReverse ? hit.face : own_face;
         contact.scene_face = kIsReverse ? own_face : hit.face;
         Add(contact, faces, kIsReverse ? towards : gradient, kIsReverse ? contact.p : p_F);
@@ -579,7 +597,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     }
     contact.distance = r.distance + contact.allowance;
     contact.is_screened = false;
-    contact.sparsity = sparsity * static_cast<float>(strides.refined);
+    contact.sparsity = sparsity * static_cast<float>(stride);
     contact.gradient = r.gradient;
     contact.is_exact = r.is_exact;
     contact.point = is_at_thread ? kFixedPoint : hit.point;

@@ -161,14 +161,10 @@ class BodyQuery {
   [[nodiscard]] bool IsAllowed(const SampleFaces& sample, const Placed& sampled,
                                const Placed& field, const Vec3& p_F, const Hit& hit) const noexcept;
 
-  /** Of how many hits one is kept: of those that one test decides, and of those to be refined. */
-  struct HitStrides {
-    std::uint32_t screened;
-    std::uint32_t refined;
-  };
-
-  [[nodiscard]] HitStrides CalcStrides(std::span<const Hit> hits, std::uint32_t leaf_count,
-                                       bool are_lists_screened) const noexcept;
+  /** Finds of how many hits that are not decided at once one is refined. */
+  [[nodiscard]] std::uint32_t CalcStride(std::span<const Hit> hits, std::uint32_t leaf_count,
+                                         bool are_lists_screened,
+                                         const Placed& field) const noexcept;
   void GroundLeaf(double z_W, std::size_t leaf) noexcept;
   void AddToLayer(double distance, const SampleFaces& faces, const Vec3& nhat_S,
                   const Vec3& p_S) noexcept;

@@ -265,7 +265,12 @@ class Traversal {
       if (hits != 0) {
         std::int32_t code[8];
         P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
-        PushInBand(Screen(hits, p, code, number), s, position, number);
+        std::uint32_t zones[8];
+        for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
+          const int lane = __builtin_ctz(rest);
+          zones[lane] = faces_.zones[code[lane] >> 1];
+        }
+        PushInBand(Screen(hits, p, zones, number), s, position, zones, number);
       }
     }
     const Mask in_face_block = P::And(inside, P::LessInt(top, P::SetInt(kTopInside)));
@@ -298,14 +303,12 @@ class Traversal {
   static constexpr float kUnsure = 0.4e-6F;  // [m]; twice what single precision may be wrong by.
 
   // Pushes the hits that one analytic face decides, by their distance from it; returns the others.
-  unsigned Screen(unsigned hits, const Float* p, const std::int32_t* twice_zone,
+  unsigned Screen(unsigned hits, const Float* p, const std::uint32_t* code,
                   const std::uint32_t* number) {
-    std::uint32_t code[8];
     unsigned one = 0;
     unsigned several = 0;
     for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
-      code[lane] = faces_.zones[twice_zone[lane] >> 1];
       const std::uint32_t how = code[lane] & ~zone::kPayload;
       one |= (how == zone::kExact ? 1U : 0U) << lane;
       several |= (how == zone::kList && faces_.lists != nullptr ? 1U : 0U) << lane;
@@ -468,7 +471,7 @@ class Traversal {
   }
 
   void PushInBand(unsigned hits, const Sample& s, const float (*position)[8],
-                  const std::uint32_t* number) {
+                  const std::uint32_t* zones, const std::uint32_t* number) {
     alignas(32) float distance[8];
     alignas(32) float gradient[3][8];
     P::Store(s.distance, distance);
@@ -481,6 +484,7 @@ class Traversal {
       const int lane = __builtin_ctz(hits);
       Hit hit{
           number[lane], distance[lane], {gradient[0][lane], gradient[1][lane], gradient[2][lane]}};
+      hit.zone = zones[lane];
       if (distance[lane] < -reliable || distance[lane] > reliable) {
         const float at[3] = {position[0][lane], position[1][lane], position[2][lane]};
         float slope[3];
