@@ -21,7 +21,10 @@ class Ours : public Method {
   }
 
   std::size_t Query(const spatial::Pose& X_WH) override {
-    scene_->Query(*(*parts_)[held_].shape, X_WH, {}, &work_);
+    contact::QueryOptions options;  // Those of a tick.
+    options.point_budget = contact::kTickPointBudget;
+    options.bounds_refinement = true;
+    scene_->Query(*(*parts_)[held_].shape, X_WH, options, &work_);
     return work_.contacts().size();
   }
 

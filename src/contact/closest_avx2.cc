@@ -61,7 +61,8 @@ void CalcSides(FourTriangles* t) {
 
 // What CalcClosestOnTriangle decides one after the other is decided here at once; what it looks at
 // first is selected last.
-void CalcFour(const FourTriangles& t, const Four point[3], const FourResults& out) {
+[[gnu::always_inline]] inline void CalcFour(const FourTriangles& t, const Four point[3],
+                                            const FourResults& out) {
   const Four* a = t.a;
   const Four* b = t.b;
   const Four* c = t.c;

@@ -17,8 +17,9 @@ constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong
 // for in a list three times. Of each pair some may, so that none is left out.
 // docs/algorithms/contact.md says what comes of it.
 constexpr double kPointsPerRefined = 4;
-constexpr double kTrianglesPerPoint = 8;
+constexpr double kTrianglesPerPoint = 10;
 constexpr double kScansAsMade = 3;
+constexpr double kScansUnnamed = 2;
 constexpr double kLeastHits = 16;
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
@@ -331,6 +332,9 @@ LeafChoice BodyQuery::TestLeaves(const Placed& sampled, const Shell& shell, cons
 
 std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t leaf_count,
                                     bool are_lists_screened, const Placed& field) const noexcept {
+  if (!options_.bounds_refinement) {
+    return 1;
+  }
   const std::vector<std::uint32_t>& begin = field.shape->exact.list_begin;
   double count = 0;
   double triangles = 0;
@@ -342,7 +346,8 @@ std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t lea
     ++count;
     const std::uint32_t list = hit.list != kNoList ? hit.list : hit.zone & zone::kPayload;
     if (hit.list != kNoList || (hit.zone & ~zone::kPayload) == zone::kList) {
-      triangles += begin[list + 1] - begin[list];
+      const double scans = FacesOfList(*field.shape, list) == nullptr ? kScansUnnamed : 1;
+      triangles += scans * (begin[list + 1] - begin[list]);
     }
   }
   triangles *= field.offsets != nullptr ? kScansAsMade : 1;

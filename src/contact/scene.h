@@ -60,6 +60,10 @@ struct BrokenEdges {
  */
 inline constexpr std::size_t kMaxLeftOut = 9;
 
+/** Points of a query of a tick. With 4,096 the 99th percentile of docs/algorithms/contact.md's
+ tracks is up to 1.7 times as long; docs/algorithms/sensitivity.md has what comes of fewer. */
+inline constexpr std::uint32_t kTickPointBudget = 2048;
+
 struct QueryOptions {
   double margin{50e-6};  ///< Contacts with a distance below this are reported [m].
   std::span<const IgnoredPair> ignored{};
@@ -75,7 +79,11 @@ struct QueryOptions {
   std::uint32_t point_budget{kDefaultPointBudget};
 
   // The times of docs/realtime.md are measured with it; docs/algorithms/sensitivity.md varies it.
-  static constexpr std::uint32_t kDefaultPointBudget = 2048;
+  static constexpr std::uint32_t kDefaultPointBudget = 4096;
+
+  /** The budget also bounds how many points go through triangles, as docs/algorithms/contact.md
+   says: for queries that have to end in time. */
+  bool bounds_refinement{false};
 
   /** Pairs of `ignored` with one body that are told apart, by the bits of a face's mask; the last
    of these and all further ones are one pair. */

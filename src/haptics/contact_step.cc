@@ -134,6 +134,7 @@ ContactStep::HeldShape ContactStep::MakeHeldShape(const HeldPart& part, std::siz
   HeldShape held;
   held.query.margin = margin;
   held.query.point_budget = effort_.point_budget;
+  held.query.bounds_refinement = true;
   held.query.ignored = {ignored_.data(), guide_.CollectIgnored(part, ignored_, member)};
   std::copy(unmet_.begin(), unmet_.end(), held.query.left_out.begin() + 1);
   if (member == 0) {
@@ -522,6 +523,7 @@ void ContactStep::AddFreeContacts(ConstraintSolver* solver) noexcept {
         1.5 * options_.dt * (speed + CalcOtherSpeed() + options_.dt * options_.gravity_W.norm());
     query.left_out = {std::span<const contact::BodyId>(done.data(), done_count), ListHeld()};
     query.point_budget = effort_.point_budget;
+    query.bounds_refinement = true;
     double clearance = query.margin;
     for (std::size_t k = 0; k < bodies_.CountParts(body.id); ++k) {
       const contact::BodyId part = bodies_.PartOf(body.id, k);

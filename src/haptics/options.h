@@ -104,9 +104,8 @@ struct ContactOptions {
 
 /** How much a tick may do. Less of it where the time does not suffice, in this order. */
 struct Effort {
-  std::uint32_t point_budget{
-      contact::QueryOptions::kDefaultPointBudget};  ///< Points of each query.
-  int iterations{30};                               ///< Iterations of the solver.
+  std::uint32_t point_budget{contact::kTickPointBudget};  ///< Points of each query.
+  int iterations{30};                                     ///< Iterations of the solver.
   bool wakes_bodies{true};  ///< Loose parts begin to move when they are touched.
 };
 
