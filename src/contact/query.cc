@@ -422,24 +422,28 @@ bool BodyQuery::SetMasks(BodyId id, std::uint8_t keep) noexcept {
 }
 
 template <bool kIsReverse>
-bool BodyQuery::IsAllowed(const SampleFaces& sample, const Placed& sampled, const Placed& field,
-                          const Vec3& p_F, const Hit& hit) const noexcept {
-  if (allowance_ == nullptr) {
+double BodyQuery::CalcAllowance(const SampleFaces& sample, std::uint32_t face) const noexcept {
+  return allowance_ != nullptr ? AllowedDepth<kIsReverse>(*allowance_, sample, face) : 0;
+}
+
+template <bool kIsReverse>
+bool BodyQuery::IsAllowed(const SampledShell& sampled, const Hit& hit,
+                          const Sample& sample) const noexcept {
+  const double depth = CalcAllowance<kIsReverse>(sample.faces, kNoFace);
+  const double least =
+      static_cast<double>(hit.distance) + depth - sampled.placed.growth() - sampled.field.growth();
+  if (depth == 0 || least < margin_) {
+    return false;
+  }
+  const Shape::Data& shape = *sampled.field.shape;
+  const ZoneAt zone = FindZone(shape, sample.p_F);
+  if (!zone.is_list() || least - zone.slack < margin_) {
     return false;
   }
   const auto other = kIsReverse ? allowance_->held_faces : allowance_->scene_faces;
-  const double depth = AllowedDepth<kIsReverse>(*allowance_, sample, kNoFace);
-  const double moved = sampled.growth() + field.growth();
-  if (depth == 0 || static_cast<double>(hit.distance) - moved + depth < margin_) {
-    return false;
-  }
-  const ZoneAt zone = FindZone(*field.shape, p_F);
-  if (!zone.is_list() || static_cast<double>(hit.distance) - zone.slack - moved + depth < margin_) {
-    return false;
-  }
-  const ListFaces* list = FacesOfList(*field.shape, zone.payload());
+  const ListFaces* list = FacesOfList(shape, zone.payload());
   return other.empty() || (list != nullptr && std::all_of(list->faces, list->faces + list->count,
-                                                          [&](std::uint32_t face) {
+                                                          [&other](std::uint32_t face) {
                                                             return contact::IsAllowed(other, face);
                                                           }));
 }
@@ -473,18 +477,77 @@ void BodyQuery::ThreadEdges(const Placed& sampled, const Helix& own, const Place
 }
 
 template <bool kIsReverse>
+bool BodyQuery::AddScreened(const SampledShell& sampled, const Hit& hit, const Sample& sample,
+                            RawContact* contact) noexcept {
+  const Vec3 gradient(static_cast<double>(hit.gradient[0]), static_cast<double>(hit.gradient[1]),
+                      static_cast<double>(hit.gradient[2]));
+  const Vec3 towards = sampled.R_back * gradient;
+  const double unallowed =
+      ScreenedDistance(sampled.placed, sampled.shell, sampled.field, hit, sample.p_F, towards);
+  const double allowance = CalcAllowance<kIsReverse>(sample.faces, hit.face);
+  const double distance = unallowed + allowance;
+  std::uint32_t own_face = kNoFace;
+  if (distance >= margin_ + kScreened ||
+      (!Faces(sample.faces, sampled.shell.facing[hit.point], towards, &own_face) &&
+       unallowed > sampled.deep + kScreened)) {
+    return true;
+  }
+  if (distance >= margin_ - kScreened || distance <= stop_distance_ + kScreened) {
+    return false;
+  }
+  contact->is_screened = true;
+  contact->is_exact = true;
+  contact->distance = distance;
+  contact->gradient = gradient;
+  contact->allowance = allowance;
+  contact->point = hit.point;
+  contact->held_face = kIsReverse ? hit.face : own_face;
+  contact->scene_face = kIsReverse ? own_face : hit.face;
+  Add(*contact, sample.faces, kIsReverse ? towards : gradient,
+      kIsReverse ? contact->p : sample.p_F);
+  return true;
+}
+
+template <bool kIsReverse>
+void BodyQuery::AddRefined(const SampledShell& sampled, const Hit& hit, const Sample& sample,
+                           const Refined& r, RawContact* contact) noexcept {
+  contact->allowance = CalcAllowance<kIsReverse>(sample.faces, r.face);
+  if (!r.is_valid || r.distance + contact->allowance >= margin_) {
+    return;
+  }
+  const Vec3 towards = sampled.R_back * r.gradient;  // In the sampled shape's frame.
+  // An edge is met by its own samples: they know its direction, a face's samples would guess it.
+  const bool is_face_at_edge = sample.faces.faces[1] == kNoFace && r.other_face != kNoFace;
+  if (is_face_at_edge && r.distance > sampled.deep) {
+    return;
+  }
+  std::uint32_t own_face = kNoFace;
+  if (!Faces(sample.faces, sampled.shell.facing[hit.point], towards, &own_face) &&
+      (r.distance > sampled.deep || r.is_continued)) {
+    return;
+  }
+  contact->is_screened = false;
+  contact->is_exact = r.is_exact;
+  contact->distance = r.distance + contact->allowance;
+  contact->gradient = r.gradient;
+  contact->held_face = kIsReverse ? r.face : own_face;
+  contact->scene_face = kIsReverse ? own_face : r.face;
+  Add(*contact, sample.faces, kIsReverse ? towards : r.gradient,
+      kIsReverse ? contact->p : sample.p_F);
+}
+
+template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
                         bool has_ignored, const NearBody& body) noexcept {
-  const std::uint32_t leaf_count = body.count[kIsReverse ? 1 : 0];
+  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
+  const std::uint32_t leaf_count = body.count[kSide];
   if (is_stopped_ || leaf_count == 0) {
     return;
   }
   const RelativePose X(field, sampled);
-  const Mat3 R_back = -X.R.transpose();
   HitBuffer hits;
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
-  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
   const std::uint32_t most = body.threads.is_deep ? kBesideThread : 8;
   const LeafChoice all{work_->leaves.data() + body.first[kSide], leaf_count, most, 1};
   const LeafChoice choice = TestLeaves(sampled, shell, field, X, all, body.bounds[kSide], &hits);
@@ -499,18 +562,15 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
-  // So deep that something is wrong whatever way the sample looks.
-  const double deep = -0.5 * sampled.shape->spacing;
+  const SampledShell all_samples{sampled, shell, field, -X.R.transpose(),
+                                 -0.5 * sampled.shape->spacing};
+  const float sparsity =
+      8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
   RawContact contact;
   contact.body = body.body.value();
   contact.is_reverse = kIsReverse;
-  const float sparsity =
-      8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
   FaceFilter filter;
   filter.limit = margin_;
-  const auto allowed_depth = [this](const SampleFaces& sample, std::uint32_t face) {
-    return allowance_ != nullptr ? AllowedDepth<kIsReverse>(*allowance_, sample, face) : 0;
-  };
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
   const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
@@ -522,96 +582,48 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     const Hit& hit = hits.hits[at];
     at += step;
     at -= at >= hits.count ? hits.count : 0;
-    if (!tested.Has(hit.point)) {
-      continue;  // Of a leaf that was tested whole, to know how far it is.
+    // Some are of leaves that were tested whole, to know how far they are; on its thread a part is
+    // met by its edges.
+    if (!tested.Has(hit.point) || (left_out.number != 0 && left_out.Has(shell.thread[hit.point]))) {
+      continue;
     }
     contact.p = sampled.Sample(shell, hit.point);
-    const SampleFaces& faces = shell.faces[hit.point];
-    const Vec3 p_F = X * contact.p;
+    const Sample sample{shell.faces[hit.point], X * contact.p};
     if (has_ignored) {
       filter.mask = other_mask.data();
-      filter.bits = BitsOf(faces, own_mask);
+      filter.bits = BitsOf(sample.faces, own_mask);
     }
-    std::uint32_t own_face = kNoFace;
-    if (left_out.number != 0 && left_out.Has(shell.thread[hit.point])) {
-      continue;  // Its edges answer.
-    }
-    HelixPoint at_thread;
-    bool is_at_thread = false;
     if (other_thread != nullptr) {
-      at_thread = Locate(*other_thread, p_F);
-      is_at_thread = IsInThread(*other_thread, at_thread, margin_) ||
-                     IsNearestThread(*field.shape, *other_thread, p_F);
+      const HelixPoint place = Locate(*other_thread, sample.p_F);
+      if (IsInThread(*other_thread, place, margin_) ||
+          IsNearestThread(*field.shape, *other_thread, sample.p_F)) {
+        contact.point = kFixedPoint;
+        contact.sparsity = sparsity;
+        AddRefined<kIsReverse>(all_samples, hit, sample,
+                               RefineAtThread(*other_thread, place, margin_), &contact);
+        continue;
+      }
     }
-    const bool is_screened = !is_at_thread && IsScreened(sampled, field, hit, filter);
-    if (!is_at_thread && !is_screened && !refined.Has(hit.point)) {
+    if (IsScreened(sampled, field, hit, filter)) {
+      contact.sparsity = sparsity;
+      if (filter.Drops(hit.face) || AddScreened<kIsReverse>(all_samples, hit, sample, &contact)) {
+        continue;
+      }
+    } else if (!refined.Has(hit.point)) {
       ++work_->stats.points_dropped;
       continue;
-    }
-    if (is_screened) {
-      if (filter.Drops(hit.face)) {
-        continue;
-      }
-      const Vec3 gradient(static_cast<double>(hit.gradient[0]),
-                          static_cast<double>(hit.gradient[1]),
-                          static_cast<double>(hit.gradient[2]));
-      const Vec3 towards = R_back * gradient;
-      const double unallowed = ScreenedDistance(sampled, shell, field, hit, p_F, towards);
-      const double distance = unallowed + allowed_depth(faces, hit.face);
-      if (distance >= margin_ + kScreened ||
-          (!Faces(faces, shell.facing[hit.point], towards, &own_face) &&
-           unallowed > deep + kScreened)) {
-        continue;
-      }
-      if (distance < margin_ - kScreened && distance > stop_distance_ + kScreened) {
-        // What is left of these after reduction is refined then.
-        contact.is_screened = true;
-        contact.is_exact = true;
-        contact.distance = distance;
-        contact.gradient = gradient;
-        contact.allowance = distance - unallowed;
-        contact.point = hit.point;
-        contact.sparsity = sparsity;
-        contact.held_face = kIsReverse ? hit.face : own_face;
-        contact.scene_face = kIsReverse ? own_face : hit.face;
-        Add(contact, faces, kIsReverse ? towards : gradient, kIsReverse ? contact.p : p_F);
-        continue;
-      }
-    } else if (!is_at_thread && IsAllowed<kIsReverse>(faces, sampled, field, p_F, hit)) {
+    } else if (IsAllowed<kIsReverse>(all_samples, hit, sample)) {
       continue;
     }
-    const Refined r = is_at_thread ? RefineAtThread(*other_thread, at_thread, margin_)
-                                   : RefineActual(*field.shape, field.offsets, p_F, hit, filter);
-    contact.allowance = allowed_depth(faces, r.face);
+    const Refined r = RefineActual(*field.shape, field.offsets, sample.p_F, hit, filter);
     // So deep inside, the field knows no face: for a sample of faces that something else answers
     // for, what it answers for may be all around, as the thread of a screw around the rim of its
     // core hole.
     const bool is_answered_for = r.face == kNoFace && filter.bits != 0;
-    if (!r.is_valid || r.distance + contact.allowance >= margin_ || is_answered_for) {
-      continue;
-    }
-    const Vec3 towards = R_back * r.gradient;  // In the sampled shape's frame.
-    // An edge is met by its own samples: they know its direction, a face's samples would guess it.
-    const bool is_face_at_edge = faces.faces[1] == kNoFace && r.other_face != kNoFace;
-    if (is_face_at_edge && r.distance > deep) {
-      continue;
-    }
-    if (!Faces(faces, shell.facing[hit.point], towards, &own_face) &&
-        (r.distance > deep || r.is_continued)) {
-      continue;
-    }
-    contact.distance = r.distance + contact.allowance;
-    contact.is_screened = false;
-    contact.sparsity = sparsity * static_cast<float>(stride);
-    contact.gradient = r.gradient;
-    contact.is_exact = r.is_exact;
-    contact.point = is_at_thread ? kFixedPoint : hit.point;
-    contact.held_face = kIsReverse ? r.face : own_face;
-    contact.scene_face = kIsReverse ? own_face : r.face;
-    if constexpr (kIsReverse) {
-      Add(contact, faces, towards, contact.p);
-    } else {
-      Add(contact, faces, r.gradient, p_F);
+    if (!is_answered_for) {
+      contact.point = hit.point;
+      contact.sparsity = sparsity * static_cast<float>(stride);
+      AddRefined<kIsReverse>(all_samples, hit, sample, r, &contact);
     }
   }
 }

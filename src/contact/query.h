@@ -156,11 +156,38 @@ class BodyQuery {
   LeafChoice TestLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
                         const RelativePose& X_FS, const LeafChoice& all, const BoundView& bounds,
                         HitBuffer* hits) noexcept;
+
+  /** The samples of a shell near a body. */
+  struct SampledShell {
+    const Placed& placed;
+    const Shell& shell;
+    const Placed& field;
+    Mat3 R_back;  ///< Takes a gradient of the field to the direction towards it from a sample.
+    double deep;  ///< Distance at which something is wrong whatever way a sample looks [m].
+  };
+
+  /** One of them. */
+  struct Sample {
+    const SampleFaces& faces;
+    Vec3 p_F;  ///< In the field's frame.
+  };
+
+  /** Finds how deep a sample may lie in a face of the other shape [m]. */
+  template <bool kIsReverse>
+  [[nodiscard]] double CalcAllowance(const SampleFaces& sample, std::uint32_t face) const noexcept;
   /** Whether a sample is allowed to be as deep as a hit says, whatever face of a list it meets. */
   template <bool kIsReverse>
-  [[nodiscard]] bool IsAllowed(const SampleFaces& sample, const Placed& sampled,
-                               const Placed& field, const Vec3& p_F, const Hit& hit) const noexcept;
-
+  [[nodiscard]] bool IsAllowed(const SampledShell& sampled, const Hit& hit,
+                               const Sample& sample) const noexcept;
+  /** Adds a hit that one face decides as it is, to be refined if it is left of the reduction. False
+   where single precision does not tell whether it is a contact. */
+  template <bool kIsReverse>
+  bool AddScreened(const SampledShell& sampled, const Hit& hit, const Sample& sample,
+                   RawContact* contact) noexcept;
+  /** Adds a hit by what refinement made of it, if it is a contact. */
+  template <bool kIsReverse>
+  void AddRefined(const SampledShell& sampled, const Hit& hit, const Sample& sample,
+                  const Refined& r, RawContact* contact) noexcept;
   /** Finds of how many hits that are not decided at once one is refined. */
   [[nodiscard]] std::uint32_t CalcStride(std::span<const Hit> hits, std::uint32_t leaf_count,
                                          bool are_lists_screened,
