@@ -12,12 +12,12 @@ const std::uint32_t kGroundBody = BodyId{}.value();  // An invalid id: Contact::
 // bear. A choice.
 constexpr std::uint32_t kBesideThread = 2;
 constexpr double kScreened = 0.2e-6;  // [m]; what single precision may be wrong by.
-// Hits that one test does not decide go through the triangles of a list. Of the budget of points
-// one in so many may, with so many triangles for each point of the budget; faces as made are looked
-// for in a list three times. Of each pair some may, so that none is left out.
-// docs/algorithms/contact.md says what comes of it.
-constexpr double kPointsPerRefined = 4;
+// Hits that one test does not decide go through the triangles of a list. For each point of the
+// budget there may be so many triangles; a hit takes as long as some in any case, faces as made are
+// looked for in a list three times, and of a list without names of faces more is looked at. Of each
+// pair some hits may, so that none is left out. docs/algorithms/contact.md says what comes of it.
 constexpr double kTrianglesPerPoint = 10;
+constexpr double kTrianglesPerHit = 8;
 constexpr double kScansAsMade = 3;
 constexpr double kScansUnnamed = 2;
 constexpr double kLeastHits = 16;
@@ -351,11 +351,10 @@ std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t lea
     }
   }
   triangles *= field.offsets != nullptr ? kScansAsMade : 1;
-  const double share = points_per_leaf_ * leaf_count;
-  std::uint32_t stride =
-      1;  // Doubled, so that the same hits are kept as their number varies a little.
-  while (count > kLeastHits * stride && (kPointsPerRefined * count > share * stride ||
-                                         triangles > kTrianglesPerPoint * share * stride)) {
+  triangles += kTrianglesPerHit * count;
+  const double share = kTrianglesPerPoint * points_per_leaf_ * leaf_count;
+  std::uint32_t stride = 1;  // Doubled: the same hits are kept as their number varies a little.
+  while (count > kLeastHits * stride && triangles > share * stride) {
     stride *= 2;
   }
   return stride;

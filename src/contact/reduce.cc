@@ -102,14 +102,18 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
   if (group == nullptr) {
     return;
   }
-  const double more = contact.is_screened ? kFurther : 0;
   const Reaches reach = ReachesOf(group->u, group->v, p_S);
   unsigned further = 0;
+  double most = 0;
   for (std::size_t k = 0; k < kTangents; ++k) {
-    further |= (reach[k] > group->reach[k] + more ? 1U : 0U) << k;
+    further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;
+    most = std::max(most, reach[k] - group->reach[k]);
   }
-  const bool is_deeper = contact.distance < group->least - (contact.is_screened ? kDeeper : 0);
-  if (further == 0 && !is_deeper) {
+  const bool is_deeper = contact.distance < group->least;
+  const bool matters = contact.is_screened
+                           ? most > kFurther || contact.distance < group->least - kDeeper
+                           : further != 0 || is_deeper;
+  if (!matters) {
     return;
   }
   const auto cell = static_cast<std::uint8_t>(std::find(group->uses.begin(), group->uses.end(), 0) -
