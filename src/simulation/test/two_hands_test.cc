@@ -109,6 +109,24 @@ TEST(TwoHandsTest, PhysicsThatStandsStillForHalfAMinuteMissesNoPart) {
   EXPECT_EQ(hands.simulation.physics().placement(kSecond), Placement::kHeld);
 }
 
+constexpr double kDeepestOfTwoHands = 0.1e-3;  // [m]; docs/limits.md, "hands at one part".
+
+// Each hand stops its part before the other's as that was in the tick before: how deep the first
+// touch is depends on the gap that is left then.
+TEST(TwoHandsTest, FirstTouchIsWithinTheLimitWhateverGapIsLeft) {
+  for (int i = 0; i < 10; ++i) {
+    SCOPED_TRACE(::testing::Message() << "10 um times " << i);
+    TwoHands hands(Blocks());
+    hands.TakeBlocksUp();
+    hands.Run(0.1, Vec3(1e-4 * i, 0, 0));
+    hands.Run(0.1, Vec3(0.1, 0, 0));
+    EXPECT_GT(hands.out[0].contact_count, 2);
+    for (const Watch& watch : hands.watches) {
+      EXPECT_LE(watch.deepest, kDeepestOfTwoHands);
+    }
+  }
+}
+
 TEST(TwoHandsTest, X7PartsPushAgainstEachOtherWithOneForce) {
   TwoHands hands(Blocks());
   hands.TakeBlocksUp();
@@ -134,7 +152,7 @@ TEST(TwoHandsTest, X7PartsPushAgainstEachOtherWithOneForce) {
     EXPECT_LT(CalcMismatch(hands), 0.03) << speed;
   }
   for (const Watch& watch : hands.watches) {
-    EXPECT_LE(watch.deepest, haptics::ContactOptions().stop_depth);
+    EXPECT_LE(watch.deepest, kDeepestOfTwoHands);
     EXPECT_TRUE(watch.is_finite);
   }
   // Turned about at once, which no hand can, they still do not get into each other.
