@@ -14,7 +14,7 @@ namespace hvas::contact {
 struct SampledPair {
   std::uint64_t sampled{0};  ///< Serial numbers of the shapes.
   std::uint64_t field{0};
-  std::uint32_t body{0};  ///< Of the scene.
+  std::uint32_t body{0};  ///< Number of the scene's body.
   std::uint32_t self{0};  ///< The held part as a body of the scene, where it is one.
   bool is_reverse{false};
 

@@ -142,7 +142,8 @@ struct HitBuffer {
 /** A leaf of a shell that may be near a field. */
 struct NearLeaf {
   std::uint32_t leaf;
-  std::uint32_t place;  ///< In the tree: eight times its parent's number, and which child it is.
+  std::uint32_t
+      place;  ///< Place of its bound: eight times its parent's number, and which child it is.
 };
 
 struct LeafBuffer {

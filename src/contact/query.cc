@@ -243,19 +243,19 @@ template <bool kIsReverse>
 void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const Placed& field,
                               const ThreadSamples& left_out, NearBody* near) noexcept {
   const RelativePose X(field, sampled);
-  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
-  near->bounds[kSide] = {};
+  const std::size_t side = kIsReverse ? 1 : 0;
+  near->bounds[side] = {};
   if (work_->memory != nullptr) {
     const SampledPair pair{sampled.shape->serial, field.shape->serial, near->body.value(),
                            options_.self.value(), kIsReverse};
-    near->bounds[kSide] =
+    near->bounds[side] =
         work_->memory->Find(pair, X.R, X.p, sampled.half().norm(), 8 * shell.nodes.size());
   }
   LeafBuffer out;
   out.leaves = work_->leaves.data() + work_->leaf_count;
   out.capacity = static_cast<std::uint32_t>(work_->leaves.size() - work_->leaf_count);
   kernel_.collect(shell.view, field.shape->field.view, X.Single(),
-                  static_cast<float>(Reach(sampled, field, X)), near->bounds[kSide], &out);
+                  static_cast<float>(Reach(sampled, field, X)), near->bounds[side], &out);
   work_->stats.is_truncated = work_->stats.is_truncated || out.is_truncated;
   if (left_out.number != 0) {
     // What is on its thread is met by its edges, and by what the other has beside its own thread.
@@ -264,8 +264,8 @@ void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const P
         [&](const NearLeaf& leaf) { return left_out.Has(shell.leaf_thread[leaf.leaf]); });
     out.count = static_cast<std::uint32_t>(kept - out.leaves);
   }
-  near->first[kSide] = static_cast<std::uint32_t>(work_->leaf_count);
-  near->count[kSide] = out.count;
+  near->first[side] = static_cast<std::uint32_t>(work_->leaf_count);
+  near->count[side] = out.count;
   work_->leaf_count += out.count;
 }
 
@@ -538,8 +538,8 @@ void BodyQuery::AddRefined(const SampledShell& sampled, const Hit& hit, const Sa
 template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
                         bool has_ignored, const NearBody& body) noexcept {
-  constexpr std::size_t kSide = kIsReverse ? 1 : 0;
-  const std::uint32_t leaf_count = body.count[kSide];
+  const std::size_t side = kIsReverse ? 1 : 0;
+  const std::uint32_t leaf_count = body.count[side];
   if (is_stopped_ || leaf_count == 0) {
     return;
   }
@@ -548,8 +548,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   hits.hits = work_->hits.data();
   hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
   const std::uint32_t most = body.threads.is_deep ? kBesideThread : 8;
-  const LeafChoice all{work_->leaves.data() + body.first[kSide], leaf_count, most, 1};
-  const LeafChoice choice = TestLeaves(sampled, shell, field, X, all, body.bounds[kSide], &hits);
+  const LeafChoice all{work_->leaves.data() + body.first[side], leaf_count, most, 1};
+  const LeafChoice choice = TestLeaves(sampled, shell, field, X, all, body.bounds[side], &hits);
   const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;

@@ -169,7 +169,7 @@ class BodyQuery {
   /** One of them. */
   struct Sample {
     const SampleFaces& faces;
-    Vec3 p_F;  ///< In the field's frame.
+    Vec3 p_F;  ///< Position in the field's frame.
   };
 
   /** Finds how deep a sample may lie in a face of the other shape [m]. */

@@ -101,8 +101,8 @@ struct QueryStats {
 /** Whether queries of a workspace remember what is far away. */
 enum class QueryMemory {
   kNone,
-  kOfMotion  ///< For poses that follow one another closely: same answers sooner, for 2 MB of
-             ///< memory.
+  kOfMotion  ///< They do, with the same answers: for poses that follow one another closely. Takes
+             ///< 2 MB.
 };
 
 /** Everything a query writes to: sized once, so that a query allocates nothing. One per thread. */

@@ -95,7 +95,7 @@ struct Shell {
   std::vector<SampleFaces> faces;
   std::vector<float> facing;  ///< Each point's least cosine of its normal against a contact's.
   std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
-  std::vector<std::uint8_t> rank;  ///< Of each point, its place in the order of its leaf; likewise.
+  std::vector<std::uint8_t> rank;   ///< Each point's place in the order of its leaf; likewise.
   std::size_t point_count{0};
   // Of a shape with threads, Complete fills them: one more than the number of the thread on which a
   // point lies, or all points of a leaf, and kMaxHelices more beyond its span; 0: on none.

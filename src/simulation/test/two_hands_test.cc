@@ -354,7 +354,7 @@ class Forces final : public Sink {
 };
 
 TEST(TwoHandsTest, TwoPersonsAtTwoDevicesWorkAtOnceAndEveryTickRunsAgain) {  // N8, N9, X4
-  const auto model = Blocks();
+  const auto& model = Blocks();
   Person left("openhaptics", "touch", 1, *model);
   Person right("haply", "inverse3", 2, *model);
   Simulation simulation(model, std::vector{left.options, right.options});
@@ -476,7 +476,7 @@ TEST(TwoPersonsTest, TakeTurnsWhereOnePartIsInTheOthersWay) {
 }
 
 TEST(TwoPersonsTest, WhatAnotherHandHasPutInItsPlaceIsDone) {
-  const auto model = Blocks();
+  const auto& model = Blocks();
   Simulation simulation(model, std::vector<haptics::TickOptions>(2));
   const OccurrenceId base = model->sequence.steps.front().occurrence;
   ASSERT_NE(base, kSecond);
