@@ -41,8 +41,7 @@ class BoundMemory {
                                std::size_t count) noexcept;
 
  private:
-  static constexpr std::size_t kPairs =
-      64;  ///< Remembered; the least used one makes way. A choice.
+  static constexpr std::size_t kPairs = 64;   ///< The least used one makes way. A choice.
   static constexpr std::size_t kMost = 8192;  ///< Bounds of a pair: 50,000 samples. A choice.
 
   struct Entry {
@@ -59,7 +58,7 @@ class BoundMemory {
   std::array<Entry, kPairs> entries_;
   std::vector<float> bounds_;  // kMost an entry.
   std::uint64_t query_{0};
-  mutable std::size_t next_{0};  // Where the pair after the last one was: queries ask in one order.
+  std::size_t next_{0};  // Where the pair after the last one was: queries ask in one order.
 };
 
 }  // namespace hvas::contact

@@ -36,10 +36,10 @@ Four Select(Four mask, Four yes, Four no) {
 // Four triangles, coordinate by coordinate, and the dot products of their sides.
 struct FourTriangles {
   Four a[3];
-  Four ab[3];
-  Four ac[3];
   Four b[3];
   Four c[3];
+  Four ab[3];
+  Four ac[3];
   Four ab_ab;
   Four ab_ac;
   Four ac_ac;

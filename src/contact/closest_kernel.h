@@ -44,9 +44,6 @@ struct TriangleArrays {
 using CalcFourClosest = void (*)(const TriangleArrays& mesh, const std::uint32_t numbers[4],
                                  const double p[3], FourClosest* out) noexcept;
 
-/** The fastest one that the machine has. */
-[[nodiscard]] CalcFourClosest ChooseFourClosest() noexcept;
-
 void CalcFourClosestScalar(const TriangleArrays& mesh, const std::uint32_t numbers[4],
                            const double p[3], FourClosest* out) noexcept;
 
@@ -56,8 +53,13 @@ void CalcFourClosestScalar(const TriangleArrays& mesh, const std::uint32_t numbe
 using CalcEightClosest = void (*)(const TriangleCorners* triangles, const std::uint32_t numbers[8],
                                   int count, const EightPoints& p, EightClosest* out) noexcept;
 
-/** The fastest one that the machine has. */
-[[nodiscard]] CalcEightClosest ChooseEightClosest() noexcept;
+struct ClosestKernels {
+  CalcFourClosest four;
+  CalcEightClosest eight;
+};
+
+/** The fastest ones that the machine has. */
+[[nodiscard]] ClosestKernels ChooseClosestKernels() noexcept;
 
 void CalcEightClosestScalar(const TriangleCorners* triangles, const std::uint32_t numbers[8],
                             int count, const EightPoints& p, EightClosest* out) noexcept;

@@ -142,8 +142,7 @@ struct HitBuffer {
 /** A leaf of a shell that may be near a field. */
 struct NearLeaf {
   std::uint32_t leaf;
-  std::uint32_t
-      place;  ///< Place of its bound: eight times its parent's number, and which child it is.
+  std::uint32_t place;  ///< Place of its bound: eight times its parent's number plus the child's.
 };
 
 struct LeafBuffer {

@@ -242,22 +242,13 @@ void CalcFourClosestScalar(const TriangleArrays& mesh, const std::uint32_t numbe
   }
 }
 
-CalcFourClosest ChooseFourClosest() noexcept {
+ClosestKernels ChooseClosestKernels() noexcept {
 #ifdef HVAS_HAS_AVX2_KERNEL
   if (__builtin_cpu_supports("avx2")) {
-    return &CalcFourClosestAvx2;
+    return {&CalcFourClosestAvx2, &CalcEightClosestAvx2};
   }
 #endif
-  return &CalcFourClosestScalar;
-}
-
-CalcEightClosest ChooseEightClosest() noexcept {
-#ifdef HVAS_HAS_AVX2_KERNEL
-  if (__builtin_cpu_supports("avx2")) {
-    return &CalcEightClosestAvx2;
-  }
-#endif
-  return &CalcEightClosestScalar;
+  return {&CalcFourClosestScalar, &CalcEightClosestScalar};
 }
 
 Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {

@@ -319,7 +319,7 @@ class NearSearch {
   const Mesh& mesh_;
   std::vector<TriangleBox> boxes_;
   std::vector<TriangleCorners> corners_;
-  CalcEightClosest calc_closest_{ChooseEightClosest()};
+  CalcEightClosest calc_closest_{ChooseClosestKernels().eight};
   std::vector<Surroundings> surroundings_;
   std::vector<double> rim_bend_;  // Of each vertex: tangent of a rim's turn; infinite: unknown.
 };

@@ -198,7 +198,7 @@ FaceForm MakeFaceForm(const spatial::Surface& surface) {
 void Shape::Data::Complete() {
   static std::atomic<std::uint64_t> last_serial{0};
   serial = ++last_serial;
-  closest = ChooseFourClosest();
+  closest = ChooseClosestKernels().four;
   if (exact.list_faces.empty()) {  // A shape from disk has them.
     GroupLists(mesh, &exact);
   }

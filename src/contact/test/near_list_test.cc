@@ -81,10 +81,10 @@ struct ClosestCase {
 TEST(ClosestKernel, GivesTheSameBitsWithAndWithoutVectors) {
 #ifdef HVAS_HAS_AVX2_KERNEL
   if (!__builtin_cpu_supports("avx2")) {
-    EXPECT_EQ(ChooseEightClosest(), &CalcEightClosestScalar);
+    EXPECT_EQ(ChooseClosestKernels().eight, &CalcEightClosestScalar);
     return;
   }
-  EXPECT_EQ(ChooseEightClosest(), &CalcEightClosestAvx2);
+  EXPECT_EQ(ChooseClosestKernels().eight, &CalcEightClosestAvx2);
   constexpr std::array<std::uint32_t, 8> kNumbers{7, 6, 5, 4, 3, 2, 1, 0};
   Random random(23);
   std::array<int, 7> met{};
@@ -108,6 +108,37 @@ TEST(ClosestKernel, GivesTheSameBitsWithAndWithoutVectors) {
     EXPECT_GT(times, 1000);
   }
 #endif
+}
+
+TEST(ClosestKernel, FourTrianglesOfAMeshGiveTheSameBitsWithAndWithoutVectors) {
+  constexpr std::array<std::uint32_t, 4> kNumbers{5, 0, 7, 2};
+  Random random(29);
+  for (int i = 0; i < 5000; ++i) {
+    const ClosestCase given(&random);
+    Mesh mesh;
+    for (const TriangleCorners& t : given.triangles) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      for (const double* corner : {t.a, t.b, t.c}) {
+        mesh.vertices.emplace_back(corner[0], corner[1], corner[2]);
+      }
+    }
+    const Vec3 p(given.points.at[0][0], given.points.at[1][0], given.points.at[2][0]);
+    FourClosest chosen;
+    FourClosest scalar;
+    ChooseClosestKernels().four(mesh.arrays(), kNumbers.data(), p.data(), &chosen);
+    CalcFourClosestScalar(mesh.arrays(), kNumbers.data(), p.data(), &scalar);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const TrianglePoint one = mesh.ClosestOn(kNumbers[k], p);
+      ASSERT_EQ(scalar.features[k], static_cast<std::int32_t>(one.feature));
+      ASSERT_EQ(chosen.features[k], scalar.features[k]);
+      ASSERT_EQ(chosen.squared[k], scalar.squared[k]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(scalar.at[axis][k], one.q[static_cast<Eigen::Index>(axis)]);
+        ASSERT_EQ(chosen.at[axis][k], scalar.at[axis][k]);
+      }
+    }
+  }
 }
 
 TEST(NearSearch, FiltersOctantsAtOnceAsItDoesOneByOne) {
