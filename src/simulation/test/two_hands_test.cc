@@ -280,7 +280,7 @@ TEST(TwoHandsTest, X3OneHandCatchesWhatTheOtherDrops) {
 }
 
 TEST(TwoHandsTest, WithOneOperatorItIsTheSimulationOfOneHand) {
-  const auto model = testing::PegInBlockModel();
+  const auto& model = testing::PegInBlockModel();
   const haptics::TickOptions options;
   Simulation one(model, options);
   Simulation two(model, std::vector{options, options});
