@@ -94,4 +94,19 @@ double CalcSleeveShearStiffness(const RubberSleeve& sleeve) {
          std::log(sleeve.outer_radius / sleeve.inner_radius);
 }
 
+double CalcLipStiffness(const SealLip& lip) {
+  constexpr double kPoisson = 0.5;  // Rubber keeps its volume.
+  const double t = lip.thickness;
+  const double r = lip.radius;
+  const double foundation = lip.modulus * t / (r * r);
+  const double bending = lip.modulus * t * t * t / (12 * (1 - kPoisson * kPoisson));
+  const double beta = std::pow(foundation / (4 * bending), 0.25);
+  const double x = beta * lip.length;
+  constexpr double kLong = 20;  // Beyond, the root is not felt: the ratio is 1 to rounding.
+  const double ratio = x > kLong ? 1
+                                 : (std::pow(std::cosh(x), 2) + std::pow(std::cos(x), 2)) /
+                                       (std::sinh(x) * std::cosh(x) - std::sin(x) * std::cos(x));
+  return 2 * std::numbers::pi * r * foundation / (2 * beta) * ratio;
+}
+
 }  // namespace hvas::fits

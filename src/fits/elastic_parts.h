@@ -1,8 +1,8 @@
 #pragma once
 
 /** Forces of parts that give elastically on their way: closed forms of snap hooks, O-rings,
- retaining rings, slit pins and sleeves of rubber. What is pressed together along its way is in
- fits/pressed_parts.h. docs/algorithms/flexible.md compares them with published examples. */
+ retaining rings, slit pins, sleeves of rubber and lip seals. What is pressed together along its way
+ is in fits/pressed_parts.h. docs/algorithms/flexible.md compares them with published examples. */
 namespace hvas::fits {
 
 /** An arm of rectangular section that bends aside: a snap hook, a wall. */
@@ -108,5 +108,23 @@ struct RubberSleeve {
  Source: Adkins and Gent, Load-deflexion relations of rubber bush mountings, Brit. J. Appl. Phys. 5
  (1954): the axial mode. */
 [[nodiscard]] double CalcSleeveShearStiffness(const RubberSleeve& sleeve);
+
+/** The lip of a shaft seal: a short tube of rubber that stands on a rigid ring. */
+struct SealLip {
+  double radius{0};     ///< Radius of its edge [m].
+  double length{0};     ///< From its root to its edge, along the axis [m].
+  double thickness{0};  ///< [m]
+  double modulus{0};    ///< E of the rubber [Pa].
+};
+
+/** Radial force on the whole lip for each metre by which its shaft spreads its edge [N/m].
+ Each strip of it bends like a cantilever, and the hoop holds it back like an elastic foundation:
+ with k = E t / r^2, D = E t^3 / (12 (1 - nu^2)), nu = 0.5, b = (k / (4 D))^(1/4) and x = b l,
+ 2 pi r k / (2 b) (cosh^2 x + cos^2 x) / (sinh x cosh x - sin x cos x). A short lip has the force of
+ the strips, 3 D / l^3, and a long one that of a tube, k / (2 b), for each metre around.
+ Source: Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, for the shell as a beam on
+ an elastic foundation; Hetenyi, Beams on Elastic Foundation, for one of finite length that is held
+ at one end and loaded at the other. What a garter spring adds is not in it. */
+[[nodiscard]] double CalcLipStiffness(const SealLip& lip);
 
 }  // namespace hvas::fits

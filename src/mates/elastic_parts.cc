@@ -1,6 +1,7 @@
 #include "mates/elastic_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -32,6 +33,10 @@ void TakeStated(const StatedElastic& stated, ElasticPart* part) {
   take(stated.thickness, &part->thickness);
   take(stated.outer, &part->outer);
   take(stated.inner, &part->inner);
+  if (stated.lip_length) {
+    part->lip_root =
+        part->lip_at - std::copysign(*stated.lip_length, part->lip_at - part->lip_root);
+  }
   take(stated.coils, &part->coils);
   take(stated.modulus, &part->modulus);
   take(stated.stiffness, &part->stiffness);
@@ -85,6 +90,10 @@ std::string DescribeSizes(const ElasticPart& part) {
                          part.modulus / 1e6);
     case ElasticKind::kSlitPin:
       return fmt::format("free diameter {:.4g} mm, wall {:.3g} mm", ToMm(part.free_size), t);
+    case ElasticKind::kLipSeal:
+      return fmt::format(
+          "lip {:.3g} mm long, {:.3g} mm thick, {:.4g} mm wide when free, {:.3g} MPa",
+          ToMm(part.lip_length()), t, ToMm(part.free_size), part.modulus / 1e6);
     case ElasticKind::kSleeve:
       break;
   }
@@ -164,6 +173,10 @@ std::string FindMissingSize(const ElasticPart& part) {
       return !(part.thickness > 0) || !(part.outer > 0) ? "thickness or length is" : "";
     case ElasticKind::kGasket:
       return !(part.area > 0) ? "area is" : "";
+    case ElasticKind::kLipSeal:
+      return !(part.thickness > 0) || !(part.lip_length() > 0) || !(part.free_size > 0)
+                 ? "length or thickness of its lip is"
+                 : "";
     case ElasticKind::kSlitPin:
       break;
   }
@@ -193,15 +206,27 @@ std::optional<fits::PressedPart> MakePressedPart(const ElasticPart& part) {
       return fits::FlatGasket{part.area, part.free_area, part.free_size, part.modulus};
     case ElasticKind::kSlitPin:
     case ElasticKind::kSleeve:
+    case ElasticKind::kLipSeal:
       break;
   }
   return std::nullopt;
+}
+
+double CalcLipStiffness(const ElasticPart& seal) {
+  return seal.stiffness > 0 ? seal.stiffness
+                            : fits::CalcLipStiffness({0.5 * seal.free_size, seal.lip_length(),
+                                                      seal.thickness, seal.modulus});
 }
 
 std::string DescribeElastic(const ElasticPart& part) {
   std::string text = DescribeSizes(part);
   if (const std::string missing = FindMissingSize(part); !missing.empty()) {
     return text + "; no force, as its " + missing + " not known";
+  }
+  if (part.kind == ElasticKind::kLipSeal) {
+    return text +
+           fmt::format("; its shaft spreads it: {:.3g} N/mm around it (short shell, Hetenyi)",
+                       CalcLipStiffness(part) * units::kMetresPerMillimetre);
   }
   const std::optional<fits::PressedPart> pressed = MakePressedPart(part);
   if (!pressed) {

@@ -28,6 +28,10 @@ namespace hvas::mates {
  hole presses it. */
 [[nodiscard]] std::optional<fits::PressedPart> MakePressedPart(const product::ElasticPart& part);
 
+/** Radial force on the whole lip of a seal for each metre by which its shaft spreads it [N/m].
+ @pre The sizes that it depends on are known. */
+[[nodiscard]] double CalcLipStiffness(const product::ElasticPart& seal);
+
 /** The size that the force of a part depends on and that is not known, as in "active coils"; empty
  where none is missing. */
 [[nodiscard]] std::string FindMissingSize(const product::ElasticPart& part);

@@ -144,9 +144,10 @@ constexpr std::array kApartKeys{Text("unit", true), Note()};
 constexpr std::array kFlexibleKeys{Text("part", true),
                                    Needed(Number("allowance_mm", 0, kLargestGive_mm)), Note()};
 
-constexpr std::array<std::string_view, 7> kElasticNames{
-    "coil_spring", "disc_spring", "lock_washer", "leaf_spring", "gasket", "slit_pin", "sleeve"};
-static_assert(kElasticNames.size() == static_cast<std::size_t>(product::ElasticKind::kSleeve) + 1,
+constexpr std::array<std::string_view, 8> kElasticNames{"coil_spring", "disc_spring", "lock_washer",
+                                                        "leaf_spring", "gasket",      "slit_pin",
+                                                        "sleeve",      "lip_seal"};
+static_assert(kElasticNames.size() == static_cast<std::size_t>(product::ElasticKind::kLipSeal) + 1,
               "a kind of elastic part has no name here");
 
 constexpr std::array kElasticKeys{Text("part", true),
@@ -154,6 +155,7 @@ constexpr std::array kElasticKeys{Text("part", true),
                                   Diameter("free_length_mm"),
                                   Diameter("free_diameter_mm"),
                                   Diameter("thickness_mm"),
+                                  Diameter("lip_length_mm"),
                                   Diameter("outer_diameter_mm"),
                                   Diameter("inner_diameter_mm"),
                                   Number("active_coils", 0, kMostCoils, true),
@@ -498,6 +500,7 @@ Result<StatedElastic> ReadElastic(const ordered_json& item, const Place& place) 
   stated.thickness = NumberAt(item, "thickness_mm", units::kMetresPerMillimetre);
   stated.outer = NumberAt(item, "outer_diameter_mm", units::kMetresPerMillimetre);
   stated.inner = NumberAt(item, "inner_diameter_mm", units::kMetresPerMillimetre);
+  stated.lip_length = NumberAt(item, "lip_length_mm", units::kMetresPerMillimetre);
   stated.coils = NumberAt(item, "active_coils", 1);
   stated.modulus = NumberAt(item, "modulus_mpa", kPascalsPerMegapascal);
   stated.stiffness = NumberAt(item, "stiffness_n_per_mm", 1 / units::kMetresPerMillimetre);

@@ -123,12 +123,13 @@ struct StatedElastic {
   std::string part;                          ///< Occurrences of this name or path.
   std::optional<product::ElasticKind> kind;  ///< Found from name and form where it is not stated.
   std::optional<double> free_size;           ///< Length, or diameter, with nothing on it [m].
-  std::optional<double> thickness;           ///< Thickness of wire, disc, ring, strip or wall [m].
-  std::optional<double> outer;               ///< Outer diameter [m].
-  std::optional<double> inner;               ///< Inner diameter [m].
-  std::optional<double> coils;               ///< Active coils.
-  std::optional<double> modulus;             ///< Young's modulus [Pa].
-  std::optional<double> stiffness;           ///< Force for each metre, in place of a formula [N/m].
+  std::optional<double> thickness;   ///< Thickness of wire, disc, ring, strip, wall or lip [m].
+  std::optional<double> outer;       ///< Outer diameter [m].
+  std::optional<double> inner;       ///< Inner diameter [m].
+  std::optional<double> lip_length;  ///< From the root of a lip to its edge [m].
+  std::optional<double> coils;       ///< Active coils.
+  std::optional<double> modulus;     ///< Young's modulus [Pa].
+  std::optional<double> stiffness;   ///< Force for each metre, in place of a formula [N/m].
   std::string where;
 };
 

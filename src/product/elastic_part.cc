@@ -405,6 +405,104 @@ ElasticPart MeasureSleeve(const Part& part) {
   return elastic;
 }
 
+/** What a line from the axis of a ring outwards meets first of it. */
+struct Wall {
+  double height{0};     // Of the line, along the axis from the centre [m].
+  double inner{0};      // Radius at which it begins [m].
+  double thickness{0};  // [m]; 0: nothing is there.
+};
+
+/** The walls inside of a ring, from one end of it to the other. */
+std::vector<Wall> ListInnerWalls(const Part& part, const RoundSize& size) {
+  constexpr int kLines = 96;  // Along the axis: a lip is some tenth of a seal. A choice.
+  const Vec3 u = size.axis_B.unitOrthogonal();
+  const Vec3 v = size.axis_B.cross(u);
+  const Vec3 out = std::cos(0.31) * u + std::sin(0.31) * v;  // Off edges of the mesh.
+  std::vector<Wall> walls;
+  for (int i = 0; i < kLines; ++i) {
+    Wall wall;
+    wall.height = size.length * ((i + 0.5) / kLines - 0.5);
+    const std::vector<Crossing> crossings =
+        ListCrossings(part, size.centre_B + wall.height * size.axis_B, out, size.outer);
+    if (crossings.size() >= 2 && crossings[0].is_entering) {
+      wall.inner = crossings[0].distance;
+      wall.thickness = crossings[1].distance - crossings[0].distance;
+    }
+    walls.push_back(wall);
+  }
+  return walls;
+}
+
+/** Follows the wall from the narrowest place to one side, until it is a body that bears it.
+ @returns whether it comes to one; the walls between are those of an arm. */
+bool FollowLip(const std::vector<Wall>& walls, std::size_t narrowest, int side,
+               std::vector<Wall>* arm) {
+  constexpr double kThick = 2.5;  // Times the thinnest wall, as of arms that bend. A choice.
+  double thinnest = walls[narrowest].thickness;
+  arm->assign(1, walls[narrowest]);
+  for (std::size_t i = narrowest + static_cast<std::size_t>(side); i < walls.size();
+       i += static_cast<std::size_t>(side)) {
+    if (!(walls[i].thickness > 0)) {
+      return false;
+    }
+    if (walls[i].thickness > kThick * thinnest) {
+      return true;
+    }
+    thinnest = std::min(thinnest, walls[i].thickness);
+    arm->push_back(walls[i]);
+  }
+  return false;
+}
+
+/** The lip of a seal: the wall that goes from its narrowest place to the ring's body. Its thickness
+ is the mean along it. */
+void MeasureLip(const Part& part, const RoundSize& size, ElasticPart* seal) {
+  const std::vector<Wall> walls = ListInnerWalls(part, size);
+  std::size_t narrowest = walls.size();
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    if (walls[i].thickness > 0 &&
+        (narrowest == walls.size() || walls[i].inner < walls[narrowest].inner)) {
+      narrowest = i;
+    }
+  }
+  if (narrowest == walls.size()) {
+    return;
+  }
+  seal->lip_at = walls[narrowest].height;
+  seal->lip_root = seal->lip_at;
+  std::vector<Wall> longest;
+  int to_root = 1;
+  for (const int side : {1, -1}) {
+    std::vector<Wall> arm;
+    if (FollowLip(walls, narrowest, side, &arm) && arm.size() > longest.size()) {
+      longest = arm;
+      to_root = side;
+    }
+  }
+  double sum = 0;
+  for (const Wall& wall : longest) {
+    sum += wall.thickness;
+    seal->lip_radius = std::max(seal->lip_radius, wall.inner + wall.thickness);
+  }
+  const double step = size.length / static_cast<double>(walls.size());
+  const double length = step * static_cast<double>(longest.size());
+  const double thickness = longest.empty() ? 0 : sum / static_cast<double>(longest.size());
+  if (length > thickness) {  // What is thicker than long does not bend.
+    seal->lip_root = seal->lip_at + to_root * length;
+    seal->thickness = thickness;
+  }
+}
+
+ElasticPart MeasureLipSeal(const Part& part) {
+  ElasticPart elastic;
+  const RoundSize size = MeasureRound(part, FindAxis(part));
+  SetRound(size, &elastic);
+  elastic.free_size = size.inner;
+  MeasureLip(part, size, &elastic);
+  SetSealMaterial(part, &elastic);
+  return elastic;
+}
+
 bool IsTube(const Part& part, const ElasticPart& sleeve) {
   constexpr double kTubeVolume = 0.15;  // Collars and lips are more. A choice.
   constexpr double kThinnest = 0.02;    // Bore over the outer diameter: a solid has none. A choice.
@@ -462,6 +560,11 @@ std::optional<ElasticPart> FindByName(const Part& part, const std::string& name)
     return IsSheet(part, gasket)
                ? std::optional(WithReason(gasket, "its name, and the form of a sheet"))
                : std::nullopt;
+  }
+  if (flexible && flexible->kind == FlexibleKind::kLipSeal) {
+    const ElasticPart seal = MeasureElasticPart(ElasticKind::kLipSeal, part);
+    return IsRing(seal) ? std::optional(WithReason(seal, "its name, and the form of a ring"))
+                        : std::nullopt;
   }
   if (flexible && flexible->kind == FlexibleKind::kRubber) {
     const ElasticPart sleeve = MeasureElasticPart(ElasticKind::kSleeve, part);
@@ -530,6 +633,8 @@ const char* ToString(ElasticKind kind) {
       return "gasket";
     case ElasticKind::kSlitPin:
       return "slit pin";
+    case ElasticKind::kLipSeal:
+      return "lip seal";
     case ElasticKind::kSleeve:
       break;
   }
@@ -559,6 +664,9 @@ ElasticPart MeasureElasticPart(ElasticKind kind, const Part& part) {
       break;
     case ElasticKind::kSleeve:
       elastic = MeasureSleeve(part);
+      break;
+    case ElasticKind::kLipSeal:
+      elastic = MeasureLipSeal(part);
       break;
   }
   elastic.kind = kind;

@@ -21,7 +21,7 @@ struct FlexibleWord {
 };
 
 // Names in English, German, French, Spanish and Italian. The first one that is found counts.
-constexpr std::array<FlexibleWord, 66> kFlexibleWords{{
+constexpr std::array<FlexibleWord, 81> kFlexibleWords{{
     {"o ring", FlexibleKind::kORing},
     {"or ring", FlexibleKind::kORing},
     {"din 3771", FlexibleKind::kORing},
@@ -63,6 +63,21 @@ constexpr std::array<FlexibleWord, 66> kFlexibleWords{{
     {"rivetto", FlexibleKind::kRivet},
     {"remache", FlexibleKind::kRivet},
     {"din 7337", FlexibleKind::kRivet},
+    {"oil seal", FlexibleKind::kLipSeal},
+    {"lip seal", FlexibleKind::kLipSeal},
+    {"shaft seal", FlexibleKind::kLipSeal},
+    {"rotary seal", FlexibleKind::kLipSeal},
+    {"radial seal", FlexibleKind::kLipSeal},
+    {"rod seal", FlexibleKind::kLipSeal},
+    {"wellendichtring", FlexibleKind::kLipSeal},
+    {"radialwellendichtring", FlexibleKind::kLipSeal},
+    {"simmerring", FlexibleKind::kLipSeal},
+    {"din 3760", FlexibleKind::kLipSeal},
+    {"iso 6194", FlexibleKind::kLipSeal},
+    {"joint a levre", FlexibleKind::kLipSeal},
+    {"joint spi", FlexibleKind::kLipSeal},
+    {"paraolio", FlexibleKind::kLipSeal},
+    {"reten", FlexibleKind::kLipSeal},
     {"gasket", FlexibleKind::kGasket},
     {"dichtung", FlexibleKind::kGasket},
     {"flachdichtung", FlexibleKind::kGasket},
@@ -115,6 +130,17 @@ double LargestExtent(const Part& part) {
   return part.box_B.size().maxCoeff();
 }
 
+/** What is between the outside of a ring, which lies flat in its box, and its narrowest bore [m].
+ */
+double CalcRadialHeight(const Part& part) {
+  const double outer = LargestExtent(part);
+  double bore = outer;
+  for (const Feature& feature : part.features) {
+    bore = feature.kind == FeatureKind::kHole ? std::min(bore, 2 * feature.radius) : bore;
+  }
+  return 0.5 * (bore < outer ? outer - bore : outer);
+}
+
 /** A ring of round section: its faces are tori about one axis. */
 bool IsORing(const Part& part) {
   return !part.faces.empty() &&
@@ -149,6 +175,8 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kUndercut = 0.1;          // Of the length of a part with hooks, or of a clip.
   constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
+  constexpr double kSpread = 0.25;           // Of the radial height of a lip seal: its lip.
+  constexpr double kLargestSpread = 1.5e-3;  // [m]: lips are 1 to 2 mm narrower in diameter.
   constexpr double kElongation = 0.15;       // Of the longest side of a part of rubber.
   constexpr double kHead = 0.3;              // Of the longest side of a rivet.
   constexpr double kMostBend = 5e-3;         // [m]: a choice.
@@ -163,6 +191,8 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
       return std::min(kLargestUndercut, kUndercut * LargestExtent(part));
     case FlexibleKind::kGasket:
       return kSqueeze * LeastExtent(part);
+    case FlexibleKind::kLipSeal:
+      return std::min(kLargestSpread, kSpread * CalcRadialHeight(part));
     case FlexibleKind::kRubber:
       return std::min(LeastExtent(part), kElongation * LargestExtent(part));
     case FlexibleKind::kSpring:
@@ -208,6 +238,8 @@ const char* ToString(FlexibleKind kind) {
       return "rivet";
     case FlexibleKind::kForm:
       return "a wall that bends";
+    case FlexibleKind::kLipSeal:
+      return "lip seal";
     case FlexibleKind::kStated:
       break;
   }

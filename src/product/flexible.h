@@ -25,6 +25,7 @@ enum class FlexibleKind {
   kRubber,  ///< It is stretched: grommets, tyres, and what is of rubber.
   kRivet,   ///< Its second head is formed in its place.
   kForm,  ///< A wall or an arm of it bends: found where a way needs it (no part is classified so).
+  kLipSeal,  ///< Its lip is spread by its shaft.
 };
 
 [[nodiscard]] const char* ToString(FlexibleKind kind);

@@ -79,11 +79,11 @@ bool ReadFlexible(const Json& json, product::Product* product) {
   }
   const Json& list = json[kFlexible];
   for (const Json& entry : list) {
-    const bool is_entry =
-        entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
-        entry[0].get<std::uint64_t>() < product->occurrences.size() && entry[1].is_number() &&
-        entry[2].is_number_unsigned() &&
-        entry[2].get<std::uint64_t>() <= static_cast<std::uint64_t>(product::FlexibleKind::kForm);
+    const bool is_entry = entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
+                          entry[0].get<std::uint64_t>() < product->occurrences.size() &&
+                          entry[1].is_number() && entry[2].is_number_unsigned() &&
+                          entry[2].get<std::uint64_t>() <=
+                              static_cast<std::uint64_t>(product::FlexibleKind::kLipSeal);
     if (!is_entry) {
       return false;
     }
@@ -101,7 +101,7 @@ auto SizesOf(Part& part) {
                     &part.centre_B.y(), &part.centre_B.z(), &part.length,     &part.outer,
                     &part.inner,        &part.thickness,    &part.coils,      &part.area,
                     &part.free_area,    &part.free_size,    &part.modulus,    &part.poisson_ratio,
-                    &part.stiffness};
+                    &part.stiffness,    &part.lip_at,       &part.lip_root,   &part.lip_radius};
 }
 
 Json MakeElasticJson(const product::Product& product) {
@@ -116,6 +116,9 @@ Json MakeElasticJson(const product::Product& product) {
   return list;
 }
 
+// Sizes that records have had since parts that push back are in them; lips came later.
+constexpr std::size_t kFirstSizes = 17;
+
 /** Takes the parts that push back of a record into its product; false where they are none. Records
  of products without any, and older ones, have no list. */
 bool ReadElastic(const Json& json, product::Product* product) {
@@ -126,12 +129,12 @@ bool ReadElastic(const Json& json, product::Product* product) {
   for (const Json& entry : list) {
     product::ElasticPart part;
     const auto sizes = SizesOf(part);
-    const bool is_entry = entry.is_array() && entry.size() == 2 + sizes.size() &&
-                          entry[0].is_number_unsigned() &&
+    const bool is_entry = entry.is_array() && entry.size() >= 2 + kFirstSizes &&
+                          entry.size() <= 2 + sizes.size() && entry[0].is_number_unsigned() &&
                           entry[0].get<std::uint64_t>() < product->occurrences.size() &&
                           entry[1].is_number_unsigned() &&
                           entry[1].get<std::uint64_t>() <=
-                              static_cast<std::uint64_t>(product::ElasticKind::kSleeve) &&
+                              static_cast<std::uint64_t>(product::ElasticKind::kLipSeal) &&
                           std::all_of(entry.begin() + 2, entry.end(),
                                       [](const Json& size) { return size.is_number(); });
     if (!is_entry) {
@@ -139,7 +142,7 @@ bool ReadElastic(const Json& json, product::Product* product) {
     }
     part.occurrence = product::OccurrenceId(entry[0].get<std::uint32_t>());
     part.kind = static_cast<product::ElasticKind>(entry[1].get<int>());
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
+    for (std::size_t i = 0; i + 2 < entry.size(); ++i) {
       *sizes[i] = entry[2 + i].get<double>();
     }
     part.reason = "the record";

@@ -183,6 +183,19 @@ DeformationForm MakeArmForm(const BentArm& arm) {
   return form;
 }
 
+/** The lip of a seal, which its shaft spreads. */
+DeformationForm MakeLipForm(const ElasticPart& seal) {
+  DeformationForm form;
+  form.kind = DeformationKind::kFlare;
+  form.origin_B = seal.centre_B + seal.lip_root * seal.axis_B;
+  form.axis_B = std::copysign(1.0, seal.lip_at - seal.lip_root) * seal.axis_B;
+  form.aside_B = seal.axis_B.unitOrthogonal();
+  form.length = seal.lip_length();
+  form.range = {0, seal.lip_radius};
+  form.shares = {1, 0};
+  return form;
+}
+
 class Lister {
  public:
   Lister(const Product& product, const Sequence& sequence)
@@ -221,6 +234,13 @@ class Lister {
     const SequenceStep* step = FindInsertion(sequence_, pair.moved);
     const double most = std::max(std::abs(pair.growth[0]), std::abs(pair.growth[1]));
     if (elastic == nullptr || step == nullptr || !(most > 0)) {
+      return;
+    }
+    if (elastic->kind == ElasticKind::kLipSeal) {
+      if (elastic->lip_radius > 0) {
+        const double free = 0.5 * (elastic->free_size - elastic->inner);
+        AddRing({id, MakeLipForm(*elastic), free, 1, {}, {}}, SourceOf(pair, *step, {}));
+      }
       return;
     }
     const Part& part = product_.part_of(id);

@@ -65,7 +65,8 @@ std::optional<fits::OpenRing> OpenRingOf(const Part& part) {
                         own > kSoftestMetal ? own : kSpringSteelModulus};
 }
 
-/** Makes no face steeper than kSteepest, by what lies before it. */
+}  // namespace
+
 void LimitSteepness(double spacing, std::vector<double>* given) {
   const double most = kSteepest * spacing;
   for (std::size_t i = 1; i < given->size(); ++i) {
@@ -75,8 +76,6 @@ void LimitSteepness(double spacing, std::vector<double>* given) {
     (*given)[i - 1] = std::max((*given)[i - 1], (*given)[i] - most);
   }
 }
-
-}  // namespace
 
 std::shared_ptr<const haptics::GivingCurve> MakeGivingCurve(const product::Product& product,
                                                             const GivingPair& give,

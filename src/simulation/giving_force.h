@@ -41,4 +41,9 @@ struct GivingSamples {
     const product::Product& product, const GivingPair& give, const GivingSamples& samples,
     const Bending* bending);
 
+/** Makes no slope of a curve steeper than 60 degrees, by what lies before it: faces that are drawn
+ steeper have an edge that is not.
+ @param spacing  Of the samples [m]. @param given  As of haptics::GivingCurve. */
+void LimitSteepness(double spacing, std::vector<double>* given);
+
 }  // namespace hvas::simulation

@@ -288,8 +288,8 @@ namespace {
 
 std::vector<PressedPair> ListAllPresses(const Product& product, const Sequence& sequence) {
   std::vector<PressedPair> presses = ListPressedPairs(product, sequence);
-  for (PressedPair& pair : ListSqueezedPairs(product, sequence)) {
-    presses.push_back(std::move(pair));
+  for (auto list : {ListSqueezedPairs(product, sequence), ListSpreadLips(product, sequence)}) {
+    std::move(list.begin(), list.end(), std::back_inserter(presses));
   }
   return presses;
 }

@@ -248,6 +248,12 @@ std::string PartRun::DescribePresses(const std::vector<PressedPair>& presses) co
   }
   const std::string more =
       presses.size() > 1 ? fmt::format(", and {} more", presses.size() - 1) : "";
+  const product::ElasticPart* elastic = FindElastic(*model().product, hardest->parts.front());
+  if (elastic != nullptr && elastic->kind == product::ElasticKind::kLipSeal) {
+    return fmt::format("the lip of {} is spread by {:.2f} mm: {:.3g} N to go on ({}){}",
+                       PathOf(hardest->parts.front()), units::ToMm(hardest->compression),
+                       hardest->force, hardest->source, more);
+  }
   if (hardest->is_radial) {
     return fmt::format("{} is squeezed by {:.2f} mm all around: {:.3g} N to push it in ({}){}",
                        PathOf(hardest->parts.front()), units::ToMm(hardest->compression),

@@ -9,8 +9,9 @@
 #include "product/product.h"
 #include "simulation/sequence.h"
 
-/** Springs, spring washers and gaskets that a part presses together when it goes to its place, and
- slit pins and sleeves that their hole presses: docs/algorithms/flexible.md. */
+/** Springs, spring washers and gaskets that a part presses together when it goes to its place, slit
+ pins and sleeves that their hole presses, and lips that their shaft spreads:
+ docs/algorithms/flexible.md. */
 namespace hvas::simulation {
 
 /** A part that presses others together along its way. */
@@ -39,5 +40,11 @@ struct PressedPair {
  the length in the hole. Only where their mate has no fit of ISO 286, which would resist as well. */
 [[nodiscard]] std::vector<PressedPair> ListSqueezedPairs(const product::Product& product,
                                                          const Sequence& sequence);
+
+/** Finds lips of seals that a shaft spreads on its way, or that go over a shaft: their radial force
+ is that of mates::CalcLipStiffness(), by how much wider than the free lip the cylinders and cones
+ of the shaft are where the lip is. */
+[[nodiscard]] std::vector<PressedPair> ListSpreadLips(const product::Product& product,
+                                                      const Sequence& sequence);
 
 }  // namespace hvas::simulation

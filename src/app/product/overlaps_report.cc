@@ -1,5 +1,6 @@
 #include "app/product/overlaps_report.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,13 @@ std::vector<ElasticPart> ListElastic(const Product& product, const Selection& se
   return parts;
 }
 
+Json RateOf(const ElasticPart& part, const std::optional<fits::PressedPart>& pressed) {
+  if (part.kind == product::ElasticKind::kLipSeal && mates::FindMissingSize(part).empty()) {
+    return mates::CalcLipStiffness(part);
+  }
+  return pressed ? Json(fits::CalcPressRate(*pressed)) : Json();
+}
+
 Json ToJson(const ElasticPart& part) {
   const auto pressed = mates::MakePressedPart(part);
   const double compression = mates::CalcCompression(part);
@@ -106,11 +114,12 @@ Json ToJson(const ElasticPart& part) {
           {"outer_mm", ToMm(part.outer)},
           {"inner_mm", ToMm(part.inner)},
           {"thickness_mm", ToMm(part.thickness)},
+          {"lip_length_mm", ToMm(part.lip_length())},
           {"active_coils", part.coils},
           {"area_mm2", part.area / (units::kMetresPerMillimetre * units::kMetresPerMillimetre)},
           {"free_size_mm", ToMm(part.free_size)},
           {"youngs_modulus_pa", part.modulus},
-          {"stiffness_n_per_m", pressed ? Json(fits::CalcPressRate(*pressed)) : Json()},
+          {"stiffness_n_per_m", RateOf(part, pressed)},
           {"compression_mm", ToMm(compression)},
           {"force_n", pressed ? Json(fits::CalcPressForce(*pressed, compression)) : Json()},
           {"reason", part.reason},

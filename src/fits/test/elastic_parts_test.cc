@@ -2,6 +2,7 @@
 
 #include "fits/elastic_parts.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -136,6 +137,62 @@ TEST(RubberSleeve, IsAWallOfRubberBetweenPlates) {
   const double tension = 5e6 * 20 * kMm * wall * growth / (12 * kMm);
   EXPECT_NEAR(CalcSleeveHoopStiffness(sleeve) * growth, 2 * std::numbers::pi * tension,
               1e-9 * tension);
+}
+
+/** Stiffness of a lip by shooting: the fourth derivative of w is -k / D w from the root, where w
+ and its slope are 0, to the edge, where the moment is 0; by Runge and Kutta's steps. */
+double ShootLip(const SealLip& lip) {
+  const double t = lip.thickness;
+  const double bending = lip.modulus * t * t * t / (12 * 0.75);
+  const double foundation = lip.modulus * t / (lip.radius * lip.radius);
+  using State = std::array<double, 4>;  // w and its first three derivatives.
+  const auto slope = [&](const State& s) {
+    return State{s[1], s[2], s[3], -foundation / bending * s[0]};
+  };
+  const auto add = [](const State& s, const State& d, double by) {
+    State out = s;
+    for (std::size_t i = 0; i < 4; ++i) {
+      out[i] += by * d[i];
+    }
+    return out;
+  };
+  const auto shoot = [&](State y) {
+    constexpr int kSteps = 4'000;
+    const double h = lip.length / kSteps;
+    for (int step = 0; step < kSteps; ++step) {
+      const State a = slope(y);
+      const State b = slope(add(y, a, h / 2));
+      const State c = slope(add(y, b, h / 2));
+      const State d = slope(add(y, c, h));
+      for (std::size_t i = 0; i < 4; ++i) {
+        y[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
+      }
+    }
+    return y;
+  };
+  const State moment = shoot({0, 0, 1, 0});
+  const State shear = shoot({0, 0, 0, 1});
+  const double share = -moment[2] / shear[2];  // No moment at the edge.
+  const double w = moment[0] + share * shear[0];
+  const double load = -bending * (moment[3] + share * shear[3]);
+  return 2 * std::numbers::pi * lip.radius * load / w;
+}
+
+TEST(SealLip, IsAShortShellHeldAtItsRoot) {
+  for (const SealLip& lip :
+       {SealLip{10 * kMm, 4 * kMm, 1 * kMm, 5e6}, SealLip{25 * kMm, 5 * kMm, 0.8 * kMm, 8e6},
+        SealLip{4 * kMm, 3 * kMm, 0.5 * kMm, 5e6}}) {
+    const double shot = ShootLip(lip);
+    EXPECT_NEAR(CalcLipStiffness(lip), shot, 1e-6 * shot);
+  }
+  // Strips of a very short one, and a tube without an end.
+  const double bending = 5e6 * std::pow(1 * kMm, 3) / 9;
+  const double strips = 2 * std::numbers::pi * 3 * bending / std::pow(4 * kMm, 3);
+  EXPECT_NEAR(CalcLipStiffness({1.0, 4 * kMm, 1 * kMm, 5e6}), strips, 1e-3 * strips);
+  const double foundation = 5e6 * 1 * kMm / (10 * kMm * 10 * kMm);
+  const double beta = std::pow(foundation / (4 * bending), 0.25);
+  const double tube = 2 * std::numbers::pi * 10 * kMm * foundation / (2 * beta);
+  EXPECT_NEAR(CalcLipStiffness({10 * kMm, 1.0, 1 * kMm, 5e6}), tube, 1e-12 * tube);
 }
 
 }  // namespace

@@ -171,8 +171,8 @@ TEST(ElasticPartTest, AGasketIsASheetWithItsAreaAndEdges) {
   const double edges = std::numbers::pi * 100e-3 * 1.5e-3;
   EXPECT_NEAR(gasket->free_area, edges, 0.01 * edges);
   EXPECT_EQ(gasket->modulus, 5e6);
-  // A ring of square section is no sheet: an O-ring, or the seal of a shaft.
-  EXPECT_FALSE(FindElasticPart(MakeFlatRing(40e-3, 48e-3, 8e-3, "shaft seal")));
+  // A ring of square section is no sheet.
+  EXPECT_FALSE(FindElasticPart(MakeFlatRing(40e-3, 48e-3, 8e-3, "seal")));
 }
 
 TEST(ElasticPartTest, ASlitPinHasTheDiameterOfItsStandard) {
@@ -206,6 +206,41 @@ TEST(ElasticPartTest, ALeafSpringIsAStripByItsName) {
   EXPECT_NEAR(leaf->thickness, 0.5e-3, 1e-9);
   EXPECT_NEAR(leaf->outer, 40e-3, 1e-9);
   EXPECT_NEAR(leaf->inner, 10e-3, 1e-9);
+}
+
+/** A seal of 35 x 20 x 8 mm: a casing, its floor, and a lip that stands on the floor. */
+Part MakeSealPart(double edge, const std::string& name) {
+  const auto mm = [](double r, double z) { return std::pair(r * kElasticMm, z * kElasticMm); };
+  Part part = MakeTurned({mm(12, 0), mm(17.5, 0), mm(17.5, 8), mm(16.5, 8), mm(16.5, 1.2),
+                          mm(13.2, 1.2), mm(edge + 1.2, 6), mm(edge, 5), mm(edge, 4.9)},
+                         name);
+  part.faces.clear();
+  MeasureMesh(&part);
+  return part;
+}
+
+TEST(ElasticPartTest, ALipIsMeasuredFromItsRootToItsEdge) {
+  const auto seal = FindElasticPart(MakeSealPart(9.6, "oil seal 20x35x8"));
+  ASSERT_TRUE(seal);
+  EXPECT_EQ(seal->kind, ElasticKind::kLipSeal);
+  EXPECT_NEAR(seal->free_size, 19.2e-3, 1e-6);
+  EXPECT_NEAR(seal->lip_length(), 3.8e-3, 0.2e-3);
+  EXPECT_NEAR(seal->thickness, 1.5e-3, 0.3e-3);
+  // The edge is at 4.95 mm of 8; whichever way the axis was taken, the root is below it.
+  EXPECT_NEAR(std::abs(seal->lip_at), 0.95e-3, 0.1e-3);
+  EXPECT_GT((seal->lip_at - seal->lip_root) * seal->axis_B.z(), 3.5e-3);
+  EXPECT_GT(seal->lip_radius, 11e-3);
+  EXPECT_LT(seal->lip_radius, 13.3e-3);
+  EXPECT_EQ(seal->modulus, 5e6);
+}
+
+TEST(ElasticPartTest, ASealWithoutALipHasNone) {
+  const auto seal = FindElasticPart(MakeFlatRing(20e-3, 35e-3, 8e-3, "Wellendichtring"));
+  ASSERT_TRUE(seal);
+  EXPECT_EQ(seal->kind, ElasticKind::kLipSeal);
+  EXPECT_EQ(seal->lip_length(), 0);
+  // What is named after a seal is something else.
+  EXPECT_FALSE(FindElasticPart(MakeFlatRing(20e-3, 35e-3, 8e-3, "oil seal housing")));
 }
 
 }  // namespace
