@@ -112,7 +112,7 @@ struct RubberSleeve {
 /** The lip of a shaft seal: a short tube of rubber that stands on a rigid ring. */
 struct SealLip {
   double radius{0};     ///< Radius of its edge [m].
-  double length{0};     ///< From its root to its edge, along the axis [m].
+  double length{0};     ///< Length along the axis, from its root to its edge [m].
   double thickness{0};  ///< [m]
   double modulus{0};    ///< E of the rubber [Pa].
 };

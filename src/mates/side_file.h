@@ -126,7 +126,7 @@ struct StatedElastic {
   std::optional<double> thickness;   ///< Thickness of wire, disc, ring, strip, wall or lip [m].
   std::optional<double> outer;       ///< Outer diameter [m].
   std::optional<double> inner;       ///< Inner diameter [m].
-  std::optional<double> lip_length;  ///< From the root of a lip to its edge [m].
+  std::optional<double> lip_length;  ///< Length of a lip, from its root to its edge [m].
   std::optional<double> coils;       ///< Active coils.
   std::optional<double> modulus;     ///< Young's modulus [Pa].
   std::optional<double> stiffness;   ///< Force for each metre, in place of a formula [N/m].
