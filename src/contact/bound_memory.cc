@@ -5,7 +5,7 @@
 
 namespace hvas::contact {
 
-BoundMemory::BoundMemory() : bounds_(kPairs * kMost) {}
+BoundMemory::BoundMemory() : bounds_(kPairs * kMost), far_(kFar) {}
 
 // Returns the pair's entry, or the one that has not been used for the longest time.
 std::size_t BoundMemory::PlaceOf(const SampledPair& pair) const noexcept {
@@ -44,11 +44,12 @@ BoundView BoundMemory::Find(const SampledPair& pair, const Mat3& R, const Vec3& 
     entry.turn = is_known ? entry.turn : 0;
     entry.pair = pair;
     entry.moved = 0;
+    entry.since = ++clears_;
     std::fill(bounds, bounds + count, -std::numeric_limits<float>::infinity());
   }
   entry.R = R;
   entry.p = p;
-  return {bounds, static_cast<float>(entry.moved), ++entry.turn};
+  return {bounds, static_cast<float>(entry.moved), ++entry.turn, entry.since};
 }
 
 }  // namespace hvas::contact

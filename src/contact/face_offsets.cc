@@ -1,6 +1,7 @@
 #include "contact/face_offsets.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -78,7 +79,9 @@ Result<std::shared_ptr<const FaceOffsets>> FaceOffsets::Make(std::shared_ptr<con
     return Unexpected(Invalid(surfaces.size(), "The shape has no such face.",
                               "Give at most as many offsets as the part has faces."));
   }
+  static std::atomic<std::uint64_t> last_serial{0};
   std::shared_ptr<FaceOffsets> made(new FaceOffsets());
+  made->serial_ = ++last_serial;
   made->faces_.resize(surfaces.size());
   double outermost = 0;
   for (std::size_t f = 0; f < offsets.size(); ++f) {

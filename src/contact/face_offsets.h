@@ -79,6 +79,9 @@ class FaceOffsets {
 
   [[nodiscard]] const std::shared_ptr<const Shape>& shape() const noexcept { return shape_; }
 
+  /** A number that no other offsets of the process have. */
+  [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
+
  private:
   struct Face {
     double uniform{0};
@@ -97,6 +100,7 @@ class FaceOffsets {
   std::vector<std::array<float, 3>> shell_, features_;  // Shift of each sample.
   double largest_{0};
   double growth_{0};
+  std::uint64_t serial_{0};
 };
 
 }  // namespace hvas::contact

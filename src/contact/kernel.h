@@ -120,6 +120,8 @@ struct FloatPose {
 // 32 ones stand for no face and for no list.
 inline constexpr std::uint32_t kUnscreened = 0xffffffffU;
 inline constexpr std::uint32_t kNoList = 0xffffffffU;
+// The one before stands for a face that is known to be too far away.
+inline constexpr std::uint32_t kKnownFar = 0xfffffffeU;
 
 /** A point that may be nearer than the margin. */
 struct Hit {
@@ -167,7 +169,8 @@ inline constexpr float kBoundRounding = 1e-7F;  ///< [m] of a bound in single pr
 struct BoundView {
   float* bounds{nullptr};  ///< [m]; null: nothing is known, and nothing remembered.
   float moved{0};  ///< [m]: how far any sample has moved in the field's frame until now, at most.
-  std::uint32_t turn{0};  ///< Counts the queries that had these bounds.
+  std::uint32_t turn{0};   ///< Counts the queries that had these bounds.
+  std::uint32_t since{0};  ///< Number of the moment from which `moved` counts.
 };
 
 /** The inner loops for one set of instructions. All give the same bits. RT-safe. */

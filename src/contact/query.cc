@@ -21,6 +21,11 @@ constexpr double kTrianglesPerHit = 8;
 constexpr double kScansAsMade = 3;
 constexpr double kScansUnnamed = 2;
 constexpr double kLeastHits = 16;
+// [m] beyond the margin in which samples are looked for, to remember how far they are. A choice.
+constexpr double kLookedBeyond = 0.1e-3;
+// [m] by which two lists may answer differently for a point, beside the deviation of meshes. A
+// choice.
+constexpr double kListsAgree = 1e-6;
 
 std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& mask) {
   std::uint8_t bits = 0;
@@ -32,14 +37,12 @@ std::uint8_t BitsOf(const SampleFaces& sample, const std::vector<std::uint8_t>& 
   return bits;
 }
 
-// Whether `direction` leads along a sample's edge, or at a corner where none of its faces looks:
-// what lies there is met by the edge's end or by other samples, while this one slides past it.
+// Whether `direction` leads along the edge that a sample is on, or at a corner where none of its
+// faces looks: what lies there is met by the edge's end or by other samples, while this one slides
+// past it.
 bool IsAlongEdge(const SampleFaces& sample, const Vec3& direction, double best) {
   constexpr double kAlong = 0.8;  // Cosine: 37 degrees from the edge.
   constexpr double kAway = 0.05;  // Cosine: 87 degrees from both faces.
-  if (sample.faces[1] == kNoFace) {
-    return false;
-  }
   if (sample.faces[2] != kNoFace) {
     return best < kAway;
   }
@@ -53,6 +56,9 @@ bool IsAlongEdge(const SampleFaces& sample, const Vec3& direction, double best) 
 // moving along the wall it would never meet it.
 bool Faces(const SampleFaces& sample, float limit, const Vec3& direction, std::uint32_t* face) {
   *face = sample.faces[0];
+  if (sample.faces[1] == kNoFace) {
+    return sample.normal(0).dot(direction) > static_cast<double>(limit);
+  }
   double best = -2;
   for (std::size_t i = 0; i < kMaxPointFaces && sample.faces[i] != kNoFace; ++i) {
     const double cosine = sample.normal(i).dot(direction);
@@ -95,6 +101,11 @@ bool IsScreened(const Placed& sampled, const Placed& field, const Hit& hit,
   return std::none_of(list.faces, list.faces + list.count, [&](std::uint32_t face) {
     return filter.Drops(face) || (field.offsets != nullptr && field.offsets->Moves(face));
   });
+}
+
+// Whether the faces of a list decide where a hit is that no single test does.
+bool IsOfList(const Hit& hit) {
+  return hit.face == kUnscreened && (hit.zone & ~zone::kPayload) == zone::kList;
 }
 
 bool IsAllowed(std::span<const std::uint32_t> faces, std::uint32_t face) {
@@ -246,8 +257,16 @@ void BodyQuery::CollectLeaves(const Placed& sampled, const Shell& shell, const P
   const std::size_t side = kIsReverse ? 1 : 0;
   near->bounds[side] = {};
   if (work_->memory != nullptr) {
-    const SampledPair pair{sampled.shape->serial, field.shape->serial, near->body.value(),
-                           options_.self.value(), kIsReverse};
+    const auto made = [](const Placed& part) {
+      return part.offsets != nullptr ? part.offsets->serial() : 0;
+    };
+    const SampledPair pair{sampled.shape->serial,
+                           field.shape->serial,
+                           near->body.value(),
+                           options_.self.value(),
+                           kIsReverse,
+                           made(sampled),
+                           made(field)};
     near->bounds[side] =
         work_->memory->Find(pair, X.R, X.p, sampled.half().norm(), 8 * shell.nodes.size());
   }
@@ -340,7 +359,7 @@ std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t lea
   double triangles = 0;
   for (const Hit& hit : hits) {
     const bool is_refined = hit.list == kNoList ? hit.face == kUnscreened : !are_lists_screened;
-    if (!is_refined) {
+    if (!is_refined || hit.face == kKnownFar) {
       continue;
     }
     ++count;
@@ -535,6 +554,17 @@ void BodyQuery::AddRefined(const SampledShell& sampled, const Hit& hit, const Sa
       kIsReverse ? contact->p : sample.p_F);
 }
 
+void BodyQuery::MarkKnownFar(const BoundView& bounds, bool are_lists_screened,
+                             HitBuffer* hits) const noexcept {
+  for (std::uint32_t i = 0; i < hits->count; ++i) {
+    Hit& hit = hits->hits[i];
+    const bool is_of_list = hit.list == kNoList ? IsOfList(hit) : !are_lists_screened;
+    if (is_of_list && work_->memory->IsBeyond(bounds, hit.point, margin_)) {
+      hit.face = kKnownFar;
+    }
+  }
+}
+
 template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
                         bool has_ignored, const NearBody& body) noexcept {
@@ -553,9 +583,16 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   const bool is_thinned = choice.points < most || choice.stride > 1;
   work_->stats.points_tested += hits.points_tested;
   work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
+  const bool are_lists_screened =
+      !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr;
+  const BoundView& bounds = body.bounds[side];
+  // What is left out of the other part, or stands for its thread, is no bound of its distance.
+  const bool remembers = bounds.bounds != nullptr && !has_ignored && body.threads.held == nullptr;
+  if (remembers) {
+    MarkKnownFar(bounds, are_lists_screened, &hits);
+  }
   const std::uint32_t stride =
-      CalcStride({hits.hits, hits.count}, leaf_count,
-                 !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr, field);
+      CalcStride({hits.hits, hits.count}, leaf_count, are_lists_screened, field);
   work_->stats.is_truncated =
       work_->stats.is_truncated || is_thinned || hits.is_truncated || stride > 1;
 
@@ -569,7 +606,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   contact.body = body.body.value();
   contact.is_reverse = kIsReverse;
   FaceFilter filter;
-  filter.limit = margin_;
+  filter.limit = margin_ + (remembers ? kLookedBeyond : 0);
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
   const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
@@ -583,7 +620,8 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     at -= at >= hits.count ? hits.count : 0;
     // Some are of leaves that were tested whole, to know how far they are; on its thread a part is
     // met by its edges.
-    if (!tested.Has(hit.point) || (left_out.number != 0 && left_out.Has(shell.thread[hit.point]))) {
+    if (hit.face == kKnownFar || !tested.Has(hit.point) ||
+        (left_out.number != 0 && left_out.Has(shell.thread[hit.point]))) {
       continue;
     }
     contact.p = sampled.Sample(shell, hit.point);
@@ -615,6 +653,11 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       continue;
     }
     const Refined r = RefineActual(*field.shape, field.offsets, sample.p_F, hit, filter);
+    if (remembers && (hit.list != kNoList || IsOfList(hit))) {
+      const double least = r.is_valid ? r.distance : filter.limit;
+      const double unsure = 2 * field.shape->exact.most_deviation + kListsAgree;
+      work_->memory->SetFar(bounds, hit.point, least - unsure);
+    }
     // So deep inside, the field knows no face: for a sample of faces that something else answers
     // for, what it answers for may be all around, as the thread of a screw around the rim of its
     // core hole.

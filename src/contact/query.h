@@ -192,6 +192,9 @@ class BodyQuery {
   [[nodiscard]] std::uint32_t CalcStride(std::span<const Hit> hits, std::uint32_t leaf_count,
                                          bool are_lists_screened,
                                          const Placed& field) const noexcept;
+  /** Gives hits of lists that were too far away, and have not moved since as far, kKnownFar. */
+  void MarkKnownFar(const BoundView& bounds, bool are_lists_screened,
+                    HitBuffer* hits) const noexcept;
   void GroundLeaf(double z_W, std::size_t leaf) noexcept;
   void AddToLayer(double distance, const SampleFaces& faces, const Vec3& nhat_S,
                   const Vec3& p_S) noexcept;

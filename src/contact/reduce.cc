@@ -1,9 +1,10 @@
 #include "contact/reduce.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+
+#include "contact/quad.h"
 
 namespace hvas::contact {
 namespace {
@@ -30,14 +31,15 @@ std::uint64_t KeyOf(std::uint32_t body, std::uint32_t scene_face, const Vec3& nh
          (static_cast<std::uint64_t>(scene_face) << 8U) | DirectionCell(nhat_S);
 }
 
-using Reaches = std::array<double, 8>;
-
-Reaches ReachesOf(const Vec3& u, const Vec3& v, const Vec3& p) {
+// How far a point is along eight directions of the plane of u and v, 45 degrees apart.
+std::array<float, 8> ReachesOf(const Vec3& u, const Vec3& v, const Vec3& p) {
   const double a = u.dot(p);
   const double b = v.dot(p);
-  const double c = kDiagonal * (a + b);
-  const double d = kDiagonal * (a - b);
-  return {a, -a, b, -b, c, -c, d, -d};
+  const auto single_a = static_cast<float>(a);
+  const auto single_b = static_cast<float>(b);
+  const auto c = static_cast<float>(kDiagonal * (a + b));
+  const auto d = static_cast<float>(kDiagonal * (a - b));
+  return {single_a, -single_a, single_b, -single_b, c, -c, d, -d};
 }
 
 }  // namespace
@@ -52,17 +54,31 @@ void ContactReducer::Clear() noexcept {
 
 void ContactReducer::Group::Clear() noexcept {
   least = std::numeric_limits<double>::infinity();
-  reach.fill(-std::numeric_limits<double>::infinity());
-  uses.fill(0);
-  deepest = kCells - 1;
-  extremes.fill(kCells - 1);
-  uses[kCells - 1] = 1 + kTangents;
+  reach.fill(-std::numeric_limits<float>::infinity());
+  roles.fill(0);
 }
 
-void ContactReducer::Group::Put(std::uint8_t cell, std::uint8_t* place) noexcept {
-  --uses[*place];
-  ++uses[cell];
-  *place = cell;
+std::size_t ContactReducer::Group::FreeCell() const noexcept {
+  std::size_t cell = 0;
+  while (cell + 1 < kCells && roles[cell] != 0) {
+    ++cell;
+  }
+  return cell;
+}
+
+void ContactReducer::Group::Give(Roles taken, std::size_t cell) noexcept {
+  for (Roles& held : roles) {
+    held = static_cast<Roles>(held & ~taken);
+  }
+  roles[cell] = taken;
+}
+
+std::size_t ContactReducer::Group::CellOf(Roles role) const noexcept {
+  std::size_t cell = 0;
+  while (cell + 1 < kCells && (roles[cell] & role) == 0) {
+    ++cell;
+  }
+  return cell;
 }
 
 std::size_t ContactReducer::SlotOf(std::uint64_t key) const noexcept {
@@ -74,13 +90,13 @@ std::size_t ContactReducer::SlotOf(std::uint64_t key) const noexcept {
   return slot;
 }
 
-ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_S) noexcept {
+std::size_t ContactReducer::Find(std::uint64_t key, const Vec3& nhat_S) noexcept {
   const std::size_t slot = SlotOf(key);
   if (slots_[slot] != 0) {
-    return &groups_[slots_[slot] - 1U];
+    return slots_[slot] - 1U;
   }
   if (group_count_ == kMaxGroups) {
-    return nullptr;
+    return kMaxGroups;
   }
   Group& group = groups_[group_count_++];
   slots_[slot] = static_cast<std::uint16_t>(group_count_);
@@ -89,45 +105,45 @@ ContactReducer::Group* ContactReducer::Find(std::uint64_t key, const Vec3& nhat_
   group.u = frame.col(0);
   group.v = frame.col(1);
   group.Clear();
-  return &group;
+  return group_count_ - 1;
 }
 
 void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Vec3& p_S) noexcept {
   ++count_;
-  Group* group = Find(KeyOf(contact.body, contact.scene_face, nhat_S), nhat_S);
-  is_full_ = is_full_ || group == nullptr;
-  if (group == nullptr || !contact.is_screened) {
+  const std::size_t number = Find(KeyOf(contact.body, contact.scene_face, nhat_S), nhat_S);
+  const bool has_group = number < kMaxGroups;
+  is_full_ = is_full_ || !has_group;
+  if (!has_group || !contact.is_screened) {
     deepest_ = std::min(deepest_, contact.distance);
   }
-  if (group == nullptr) {
+  if (!has_group) {
     return;
   }
-  const Reaches reach = ReachesOf(group->u, group->v, p_S);
-  unsigned further = 0;
-  double most = 0;
-  for (std::size_t k = 0; k < kTangents; ++k) {
-    further |= (reach[k] > group->reach[k] ? 1U : 0U) << k;
-    most = std::max(most, reach[k] - group->reach[k]);
-  }
-  const bool is_deeper = contact.distance < group->least;
+  Group& group = groups_[number];
+  const std::array<float, kTangents> reach = ReachesOf(group.u, group.v, p_S);
+  const Quad low(reach.data());
+  const Quad high(reach.data() + 4);
+  const Quad known_low(group.reach.data());
+  const Quad known_high(group.reach.data() + 4);
+  const bool is_deeper = contact.distance < group.least;
+  // Those that have got no further than what is known, of all tangents.
+  const auto within = [&](float by) {
+    return BitsAtMost(low, known_low + Quad(by)) | BitsAtMost(high, known_high + Quad(by)) << 4U;
+  };
+  constexpr unsigned kAll = 0xff;
+  const unsigned further = kAll & ~within(0);
   const bool matters = contact.is_screened
-                           ? most > kFurther || contact.distance < group->least - kDeeper
+                           ? within(kFurther) != kAll || contact.distance < group.least - kDeeper
                            : further != 0 || is_deeper;
   if (!matters) {
     return;
   }
-  const auto cell = static_cast<std::uint8_t>(std::find(group->uses.begin(), group->uses.end(), 0) -
-                                              group->uses.begin());
-  group->cells[cell] = contact;
-  if (is_deeper) {
-    group->least = contact.distance;
-    group->Put(cell, &group->deepest);
-  }
-  for (; further != 0; further &= further - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(further));
-    group->reach[k] = reach[k];
-    group->Put(cell, &group->extremes[k]);
-  }
+  const std::size_t cell = group.FreeCell();
+  cells_[number][cell] = contact;
+  group.Give(static_cast<Roles>(further << 1U | (is_deeper ? kDeepest : 0U)), cell);
+  group.least = std::min(group.least, contact.distance);
+  Most(known_low, low).Store(group.reach.data());
+  Most(known_high, high).Store(group.reach.data() + 4);
 }
 
 std::size_t ContactReducer::Select(std::span<RawContact> out) noexcept {
@@ -143,16 +159,16 @@ std::size_t ContactReducer::Select(std::span<RawContact> out) noexcept {
             });
   std::size_t written = 0;
   for (std::size_t i = 0; i < group_count_ && written < out.size(); ++i) {
-    const Group& group = groups_[order[i]];
-    out[written++] = group.cells[group.deepest];
+    out[written++] = cells_[order[i]][groups_[order[i]].CellOf(kDeepest)];
   }
+  // Of each contact that is not the deepest, the first tangent counts.
   for (std::size_t k = 0; k < kTangents; ++k) {
+    const auto role = static_cast<Roles>(2U << k);
     for (std::size_t i = 0; i < group_count_ && written < out.size(); ++i) {
       const Group& group = groups_[order[i]];
-      const std::uint8_t cell = group.extremes[k];
-      const auto* const before = group.extremes.begin() + k;
-      if (cell != group.deepest && std::find(group.extremes.begin(), before, cell) == before) {
-        out[written++] = group.cells[cell];
+      const std::size_t cell = group.CellOf(role);
+      if ((group.roles[cell] & (role - 1U)) == 0) {
+        out[written++] = cells_[order[i]][cell];
       }
     }
   }

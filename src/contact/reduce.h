@@ -57,38 +57,44 @@ class ContactReducer {
 
  private:
   static constexpr double kDeeper = 20e-9;  ///< [m]: less is noise of the refined depths. A choice.
-  static constexpr double kFurther = 10e-6;  ///< [m]: less changes no lever. A choice.
+  static constexpr float kFurther = 10e-6F;  ///< [m]: less changes no lever. A choice.
   // Groups of normals on all bodies; twice as many places of the hash table; directions in which a
   // group keeps its furthest contact, 45 degrees apart.
   static constexpr std::size_t kMaxGroups = 256;
   static constexpr std::size_t kSlots = 512;
   static constexpr std::size_t kTangents = 8;
+  // A contact that a group keeps lies in one cell, whatever it is kept for. One cell more than the
+  // group can keep: there is always a free one for the next.
+  static constexpr std::size_t kCells = kTangents + 2;
 
-  // Each contact that a group keeps lies in a cell of its own, however many of its extremes it is.
+  // What a contact is kept for: a bit for the deepest, and one for each tangent.
+  using Roles = std::uint16_t;
+  static constexpr Roles kDeepest = 1;
+
+  // What is asked of a group for each contact; the contacts that it keeps are in cells_.
   struct Group {
-    // One more than it can keep: there is always a free one for the next.
-    static constexpr std::uint8_t kCells = kTangents + 2;
-
     std::uint64_t key{0};
     Vec3 u{Vec3::Zero()};
     Vec3 v{Vec3::Zero()};
     double least{0};
-    std::array<double, kTangents> reach{};
-    std::uint8_t deepest{0};  // Cell.
-    std::array<std::uint8_t, kTangents> extremes{};
-    std::array<std::uint8_t, kCells> uses{};
-    std::array<RawContact, kCells> cells;
+    std::array<float, kTangents> reach{};  // In single precision, as kFurther is far more.
+    std::array<Roles, kCells> roles{};     // Of the contacts in its cells; 0: the cell is free.
 
     void Clear() noexcept;
-    /** Lets `*place` name the cell `cell`. */
-    void Put(std::uint8_t cell, std::uint8_t* place) noexcept;
+    [[nodiscard]] std::size_t FreeCell() const noexcept;
+    /** Gives roles to the contact in a cell, which takes them from the others. */
+    void Give(Roles taken, std::size_t cell) noexcept;
+    /** The cell of the contact that has a role. */
+    [[nodiscard]] std::size_t CellOf(Roles role) const noexcept;
   };
 
   /** Slot of the key: of its group, or where it would go. */
   [[nodiscard]] std::size_t SlotOf(std::uint64_t key) const noexcept;
-  Group* Find(std::uint64_t key, const Vec3& nhat_S) noexcept;
+  /** Number of the key's group; kMaxGroups where there is no room for it. */
+  std::size_t Find(std::uint64_t key, const Vec3& nhat_S) noexcept;
 
   std::array<Group, kMaxGroups> groups_;
+  std::array<std::array<RawContact, kCells>, kMaxGroups> cells_;
   std::array<std::uint16_t, kSlots> slots_{};  // Group number + 1.
   std::size_t group_count_{0};
   std::uint32_t count_{0};

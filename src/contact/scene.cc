@@ -111,7 +111,7 @@ struct Scene::Data {
   }
 
   // Turns the reducer's choice into contacts, the deepest of each group at its very lowest point.
-  void Finish(const Placed& held, const std::optional<BrokenEdges>& edges, double margin,
+  void Finish(const Placed& held, const std::optional<BrokenEdges>& edges,
               QueryWorkspace::Data* work) const noexcept {
     const std::size_t selected = work->reducer.Select(work->raw);
     work->deepest = work->reducer.deepest();
@@ -121,7 +121,7 @@ struct Scene::Data {
     const std::span<RawContact> raw(work->raw.data(), selected);
     for (std::size_t i = 0; i < selected; ++i) {
       if (raw[i].is_screened) {
-        RefineScreened(held, margin, &raw[i]);
+        RefineScreened(held, &raw[i]);
       }
       if (i < lowest && raw[i].point != kFixedPoint) {
         MoveToLowest(held, &raw[i]);
@@ -135,15 +135,15 @@ struct Scene::Data {
     }
   }
 
-  // Gives a screened contact the distance and gradient of the exact faces.
-  void RefineScreened(const Placed& held, double margin, RawContact* raw) const noexcept {
+  // Gives a screened contact the distance and gradient of its face in double precision.
+  void RefineScreened(const Placed& held, RawContact* raw) const noexcept {
     const Met met = Meet(held, *raw);
-    FaceFilter near;
-    near.limit = margin;
-    const Refined r = RefineAlone(*met.field.shape, met.field.offsets, met.p, near);
-    if (r.is_exact) {
-      raw->distance = r.distance + raw->allowance;
-      raw->gradient = r.gradient;
+    const std::uint32_t face = raw->is_reverse ? raw->held_face : raw->scene_face;
+    const spatial::SurfaceDistance exact =
+        FaceSurface(*met.field.shape, met.field.offsets, face).CalcDistance(met.p);
+    if (exact.is_valid) {
+      raw->distance = exact.distance + raw->allowance;
+      raw->gradient = exact.gradient;
     }
   }
 
@@ -345,7 +345,7 @@ void Scene::Query(const Shape& held, const spatial::Pose& X_WH, const QueryOptio
   BodyQuery query(placed, options, options.margin, -std::numeric_limits<double>::infinity(),
                   data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, options.margin), options, work, &query);
-  data_->Finish(placed, options.broken_edges, options.margin, &work);
+  data_->Finish(placed, options.broken_edges, &work);
 }
 
 bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double tolerance,
@@ -355,7 +355,7 @@ bool Scene::IsFree(const Shape& held, const spatial::Pose& X_WH, double toleranc
   const Placed placed(held, X_WH, data_->OffsetsOfHeld(options));
   BodyQuery query(placed, options, -tolerance, -tolerance, data_->kernel, &work);
   data_->Run(data_->BoxOf(placed, X_WH, 0), options, work, &query);
-  data_->Finish(placed, {}, -tolerance, &work);
+  data_->Finish(placed, {}, &work);
   return !query.is_stopped();
 }
 

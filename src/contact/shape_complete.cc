@@ -202,6 +202,10 @@ void Shape::Data::Complete() {
   if (exact.list_faces.empty()) {  // A shape from disk has them.
     GroupLists(mesh, &exact);
   }
+  exact.most_deviation = 0;
+  for (const double deviation : exact.deviation) {
+    exact.most_deviation = std::max(exact.most_deviation, deviation);
+  }
   exact.forms.clear();
   for (const spatial::Surface& surface : exact.faces) {
     exact.forms.push_back(MakeFaceForm(surface));

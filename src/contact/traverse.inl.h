@@ -255,22 +255,29 @@ class Traversal {
     }
     if (has_bits != 0) {
       const Int b = P::MaxInt(top, P::SetInt(0));
-      const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), cell), w);
-      const Float slack = P::Gather(field_.slack, b);
-      const unsigned hits = P::Bits(P::Less(s.distance, P::Add(P::Set(margin_), slack))) & has_bits;
-      if (bounds_.bounds != nullptr) {
-        const Float bound = CalcBandBound(s, slack);
-        least_ = P::Least(P::Select(has, bound, none));
+      std::int32_t code[8];
+      P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
+      std::uint32_t zones[8];
+      unsigned exact = 0;
+      for (unsigned rest = has_bits; rest != 0; rest &= rest - 1) {
+        const int lane = __builtin_ctz(rest);
+        zones[lane] = faces_.zones[code[lane] >> 1];
+        exact |= ((zones[lane] & ~zone::kPayload) == zone::kExact ? 1U : 0U) << lane;
       }
-      if (hits != 0) {
-        std::int32_t code[8];
-        P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
-        std::uint32_t zones[8];
-        for (unsigned rest = hits; rest != 0; rest &= rest - 1) {
-          const int lane = __builtin_ctz(rest);
-          zones[lane] = faces_.zones[code[lane] >> 1];
+      // Where one face has the distance of each point, what is stored at the nodes is not needed.
+      const unsigned left = exact == has_bits
+                                ? ScreenFaces(has_bits, zones, p, number, bounds_.bounds != nullptr)
+                                : has_bits;
+      if (left != 0) {
+        const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), cell), w);
+        const Float slack = P::Gather(field_.slack, b);
+        const unsigned hits = P::Bits(P::Less(s.distance, P::Add(P::Set(margin_), slack))) & left;
+        if (bounds_.bounds != nullptr) {
+          const Float bound = CalcBandBound(s, slack);
+          least_ = P::Least(P::Select(has, bound, none));
         }
-        PushInBand(Screen(hits, p, zones, number), s, position, zones, number);
+        const unsigned others = left == has_bits ? Screen(hits, p, zones, number) : hits;
+        PushInBand(others, s, position, zones, number);
       }
     }
     const Mask in_face_block = P::And(inside, P::LessInt(top, P::SetInt(kTopInside)));
@@ -329,32 +336,101 @@ class Traversal {
     return same;
   }
 
+  // What a face's form says of points: their distances, and what their gradients follow from.
+  struct Seen {
+    Float distance;
+    Float radial[3];
+    Float r;        // Distance from the axis.
+    Float u;        // The same less the radius.
+    Float h;        // Height along the axis.
+    Float reach;    // Of round ones: distance from the middle of the section.
+    unsigned good;  // The lanes that are not on the axis, where there is no gradient.
+  };
+
+  static Seen Look(const FaceForm& form, const Float* p) {
+    Seen seen;
+    Float q[3];
+    for (int k = 0; k < 3; ++k) {
+      q[k] = P::Sub(p[k], P::Set(form.origin[k]));
+    }
+    const auto dot = [](const Float* a, const Float* b) {
+      return P::Add(P::Add(P::Mul(a[0], b[0]), P::Mul(a[1], b[1])), P::Mul(a[2], b[2]));
+    };
+    const Float axis[3] = {P::Set(form.axis[0]), P::Set(form.axis[1]), P::Set(form.axis[2])};
+    seen.h = dot(q, axis);
+    for (int k = 0; k < 3; ++k) {
+      seen.radial[k] = P::Sub(q[k], P::Mul(seen.h, axis[k]));
+    }
+    seen.r = P::Sqrt(dot(seen.radial, seen.radial));
+    seen.u = P::Sub(seen.r, P::Set(form.radius));
+    const bool is_round = form.kind == FaceForm::Kind::kRound;
+    Float d;
+    if (is_round) {
+      seen.reach = P::Sqrt(P::Add(P::Mul(seen.u, seen.u), P::Mul(seen.h, seen.h)));
+      d = P::Sub(seen.reach, P::Set(form.minor));
+    } else {
+      seen.reach = seen.u;
+      d = P::Add(P::Mul(P::Set(form.across), seen.u), P::Mul(P::Set(form.along), seen.h));
+    }
+    seen.distance = P::Mul(P::Set(form.outward), d);
+    constexpr float kOnAxis = 1e-5F;  // [m]: nearer than that a direction is rounding. A choice.
+    const bool has_axis = is_round || form.across != 0.0F;
+    seen.good = has_axis ? P::Bits(P::Less(P::Set(kOnAxis), seen.r)) : 0xffU;
+    return seen;
+  }
+
+  // Unit gradients of the distances.
+  static void CalcGradient(const FaceForm& form, const Seen& seen, float (*gradient)[8]) {
+    const Float least = P::Set(1e-12F);
+    Float across = P::Set(form.across);
+    Float along = P::Set(form.along);
+    if (form.kind == FaceForm::Kind::kRound) {
+      const Float reach = P::Max(seen.reach, least);
+      across = P::Div(seen.u, reach);
+      along = P::Div(seen.h, reach);
+    }
+    const Float outward = P::Set(form.outward);
+    const Float per_radial = P::Div(P::Mul(outward, across), P::Max(seen.r, least));
+    const Float per_axis = P::Mul(outward, along);
+    for (int k = 0; k < 3; ++k) {
+      const Float along_axis = P::Mul(per_axis, P::Set(form.axis[k]));
+      P::Store(P::Add(P::Mul(per_radial, seen.radial[k]), along_axis), gradient[k]);
+    }
+  }
+
   // Of lanes whose code is a face's number; returns those on the axis of theirs.
   unsigned ScreenFaces(unsigned todo, const std::uint32_t* code, const Float* p,
                        const std::uint32_t* number, bool keeps_least) {
     unsigned others = 0;
     while (todo != 0) {
       const std::uint32_t face = code[__builtin_ctz(todo)];
-      unsigned same = SameAsFirst(todo, code);
+      const unsigned same = SameAsFirst(todo, code);
       todo &= ~same;
-      if (faces_.forms[face].kind == FaceForm::Kind::kNone) {
+      const FaceForm& form = faces_.forms[face];
+      if (form.kind == FaceForm::Kind::kNone) {
         others |= same;
         continue;
       }
-      const Evaluated e = Evaluate(faces_.forms[face], p);
+      const Seen seen = Look(form, p);
+      others |= same & ~seen.good;
+      alignas(32) float distance[8];
+      P::Store(seen.distance, distance);
       for (unsigned rest = keeps_least ? same : 0; rest != 0; rest &= rest - 1) {
-        const float value = e.distance[__builtin_ctz(rest)] - kUnsure;
+        const float value = distance[__builtin_ctz(rest)] - kUnsure;
         least_ = value < least_ ? value : least_;
       }
-      others |= same & ~e.good;
-      for (same &= e.good; same != 0; same &= same - 1) {
-        const int lane = __builtin_ctz(same);
-        if (e.distance[lane] < margin_) {
-          Push({number[lane],
-                e.distance[lane],
-                {e.gradient[0][lane], e.gradient[1][lane], e.gradient[2][lane]},
-                face});
-        }
+      unsigned hits = same & seen.good & P::Bits(P::Less(seen.distance, P::Set(margin_)));
+      if (hits == 0) {
+        continue;
+      }
+      alignas(32) float gradient[3][8];
+      CalcGradient(form, seen, gradient);
+      for (; hits != 0; hits &= hits - 1) {
+        const int lane = __builtin_ctz(hits);
+        Push({number[lane],
+              distance[lane],
+              {gradient[0][lane], gradient[1][lane], gradient[2][lane]},
+              face});
       }
     }
     return others;
@@ -367,107 +443,77 @@ class Traversal {
     while (todo != 0) {
       const std::uint32_t number_of_list = code[__builtin_ctz(todo)] & zone::kPayload;
       const ListFaces& list = faces_.lists[number_of_list];
-      unsigned same = SameAsFirst(todo, code);
+      const unsigned same = SameAsFirst(todo, code);
       todo &= ~same;
-      Evaluated faces[ListFaces::kMost];
+      Seen seen[ListFaces::kMost];
       unsigned good = list.kind == ListFaces::Kind::kMixed ? 0U : same;
       for (unsigned i = 0; good != 0 && i < list.count; ++i) {
         const FaceForm& form = faces_.forms[list.faces[i]];
         if (form.kind == FaceForm::Kind::kNone) {
           good = 0;
         } else {
-          faces[i] = Evaluate(form, p);
-          good &= faces[i].good;
+          seen[i] = Look(form, p);
+          good &= seen[i].good;
         }
       }
       others |= same & ~good;
-      for (; good != 0; good &= good - 1) {
-        const int lane = __builtin_ctz(good);
-        if (!ScreenList(list, number_of_list, faces, lane, number[lane])) {
-          others |= 1U << lane;
-        }
+      if (good != 0) {
+        others |= ScreenList(list, number_of_list, seen, good, number);
       }
     }
     return others;
   }
 
-  struct Evaluated {
-    alignas(32) float distance[8];
-    alignas(32) float gradient[3][8];
-    unsigned good;  // The lanes that are not on the axis, where there is no gradient.
-  };
-
-  // False where the surfaces do not decide, or nearly do not.
-  bool ScreenList(const ListFaces& list, std::uint32_t number_of_list, const Evaluated* faces,
-                  int lane, std::uint32_t number) {
+  // The lanes whose distances the surfaces do not decide, or nearly do not.
+  unsigned ScreenList(const ListFaces& list, std::uint32_t number_of_list, const Seen* seen,
+                      unsigned lanes, const std::uint32_t* number) {
+    alignas(32) float distance[ListFaces::kMost][8];
+    for (unsigned i = 0; i < list.count; ++i) {
+      P::Store(seen[i].distance, distance[i]);
+    }
     const float side = list.kind == ListFaces::Kind::kIntersection ? 1.0F : -1.0F;
-    float way = side * faces[0].distance[lane];
-    float others = -3e38F;
-    unsigned last = 0;
-    for (unsigned i = 1; i < list.count; ++i) {
-      const float to = side * faces[i].distance[lane];
-      others = to > way ? way : (to > others ? to : others);
-      last = to > way ? i : last;
-      way = to > way ? to : way;
+    unsigned others = 0;
+    unsigned hits = 0;
+    unsigned met = 0;  // Bits of the faces that decide a hit.
+    unsigned deciding[8];
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      const unsigned bit = 1U << lane;
+      float way = side * distance[0][lane];
+      float second = -3e38F;
+      unsigned last = 0;
+      for (unsigned i = 1; i < list.count; ++i) {
+        const float to = side * distance[i][lane];
+        second = to > way ? way : (to > second ? to : second);
+        last = to > way ? i : last;
+        way = to > way ? to : way;
+      }
+      if (side > 0 && way >= margin_) {
+        continue;
+      }
+      if (way - second < kUnsure || !(way < -kUnsure || second + way < -kUnsure)) {
+        others |= bit;
+      } else if (distance[last][lane] < margin_) {
+        hits |= bit;
+        met |= 1U << last;
+        deciding[lane] = last;
+      }
     }
-    if (side > 0 && way >= margin_) {
-      return true;
+    alignas(32) float gradient[ListFaces::kMost][3][8];
+    for (; met != 0; met &= met - 1) {
+      const int i = __builtin_ctz(met);
+      CalcGradient(faces_.forms[list.faces[i]], seen[i], gradient[i]);
     }
-    if (way - others < kUnsure || !(way < -kUnsure || others + way < -kUnsure)) {
-      return false;
-    }
-    const Evaluated& e = faces[last];
-    if (e.distance[lane] < margin_) {
-      Push({number,
-            e.distance[lane],
-            {e.gradient[0][lane], e.gradient[1][lane], e.gradient[2][lane]},
-            list.faces[last],
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = __builtin_ctz(hits);
+      const unsigned i = deciding[lane];
+      Push({number[lane],
+            distance[i][lane],
+            {gradient[i][0][lane], gradient[i][1][lane], gradient[i][2][lane]},
+            list.faces[i],
             number_of_list});
     }
-    return true;
-  }
-
-  // Distance and unit gradient.
-  static Evaluated Evaluate(const FaceForm& form, const Float* p) {
-    Evaluated out;
-    Float q[3];
-    Float radial[3];
-    for (int k = 0; k < 3; ++k) {
-      q[k] = P::Sub(p[k], P::Set(form.origin[k]));
-    }
-    const auto dot = [](const Float* a, const Float* b) {
-      return P::Add(P::Add(P::Mul(a[0], b[0]), P::Mul(a[1], b[1])), P::Mul(a[2], b[2]));
-    };
-    const Float axis[3] = {P::Set(form.axis[0]), P::Set(form.axis[1]), P::Set(form.axis[2])};
-    const Float h = dot(q, axis);
-    for (int k = 0; k < 3; ++k) {
-      radial[k] = P::Sub(q[k], P::Mul(h, axis[k]));
-    }
-    const Float r = P::Sqrt(dot(radial, radial));
-    const Float u = P::Sub(r, P::Set(form.radius));
-    Float across = P::Set(form.across);
-    Float along = P::Set(form.along);
-    Float d;
-    if (form.kind == FaceForm::Kind::kRound) {
-      const Float reach = P::Sqrt(P::Add(P::Mul(u, u), P::Mul(h, h)));
-      const Float least = P::Max(reach, P::Set(1e-12F));
-      across = P::Div(u, least);
-      along = P::Div(h, least);
-      d = P::Sub(reach, P::Set(form.minor));
-    } else {
-      d = P::Add(P::Mul(across, u), P::Mul(along, h));
-    }
-    const Float outward = P::Set(form.outward);
-    P::Store(P::Mul(outward, d), out.distance);
-    const Float per_radial = P::Div(P::Mul(outward, across), P::Max(r, P::Set(1e-12F)));
-    const Float per_axis = P::Mul(outward, along);
-    for (int k = 0; k < 3; ++k) {
-      P::Store(P::Add(P::Mul(per_radial, radial[k]), P::Mul(per_axis, axis[k])), out.gradient[k]);
-    }
-    constexpr float kOnAxis = 1e-5F;  // [m]: nearer than that a direction is rounding. A choice.
-    const bool has_axis = form.kind == FaceForm::Kind::kRound || form.across != 0.0F;
-    out.good = has_axis ? P::Bits(P::Less(P::Set(kOnAxis), r)) : 0xffU;
-    return out;
+    return others;
   }
 
   void PushInBand(unsigned hits, const Sample& s, const float (*position)[8],
