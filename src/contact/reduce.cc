@@ -130,7 +130,7 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
   const auto within = [&](float by) {
     return BitsAtMost(low, known_low + Quad(by)) | BitsAtMost(high, known_high + Quad(by)) << 4U;
   };
-  constexpr unsigned kAll = 0xff;
+  constexpr unsigned kAll = (1U << kTangents) - 1;  // A definition.
   const unsigned further = kAll & ~within(0);
   const bool matters = contact.is_screened
                            ? within(kFurther) != kAll || contact.distance < group.least - kDeeper

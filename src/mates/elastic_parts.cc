@@ -91,9 +91,11 @@ std::string DescribeSizes(const ElasticPart& part) {
     case ElasticKind::kSlitPin:
       return fmt::format("free diameter {:.4g} mm, wall {:.3g} mm", ToMm(part.free_size), t);
     case ElasticKind::kLipSeal:
-      return fmt::format(
-          "lip {:.3g} mm long, {:.3g} mm thick, {:.4g} mm wide when free, {:.3g} MPa",
-          ToMm(part.lip_length()), t, ToMm(part.free_size), part.modulus / 1e6);
+      return (part.lip_length() > 0
+                  ? fmt::format("lip {:.3g} mm long, {:.3g} mm thick, ", ToMm(part.lip_length()), t)
+                  : "") +
+             fmt::format("{:.4g} mm wide when free, {:.3g} MPa", ToMm(part.free_size),
+                         part.modulus / 1e6);
     case ElasticKind::kSleeve:
       break;
   }
@@ -175,7 +177,7 @@ std::string FindMissingSize(const ElasticPart& part) {
       return !(part.area > 0) ? "area is" : "";
     case ElasticKind::kLipSeal:
       return !(part.thickness > 0) || !(part.lip_length() > 0) || !(part.free_size > 0)
-                 ? "length or thickness of its lip is"
+                 ? "lip's length or thickness is"
                  : "";
     case ElasticKind::kSlitPin:
       break;

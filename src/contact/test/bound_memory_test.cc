@@ -2,6 +2,7 @@
 
 #include "contact/bound_memory.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -25,6 +26,10 @@ class Walk {
       scene_.Add(shapes[(i + seed) % shapes.size()], Pose(RandomTurn(), RandomPoint(40e-3)));
     }
     held_ = shapes[seed % shapes.size()];
+    is_as_made_ = seed % 2 == 0;
+    if (is_as_made_) {
+      MakeFaces();
+    }
     X_WH_ = Pose(RandomTurn(), RandomPoint(35e-3));
     step_ = 1e-6 * std::pow(10.0, random_.Uniform(0, 3));
   }
@@ -40,6 +45,9 @@ class Walk {
     scene_.SetPose(moved, Pose(RandomPoint(0.2 * step_)) * scene_.pose(moved));
     options_.margin = random_.Uniform(0, 1) < 0.1 ? 200e-6 : 50e-6;
     options_.point_budget = 1000000;
+    if (is_as_made_ && random_.Uniform(0, 1) < 0.02) {
+      MakeFaces();
+    }
   }
 
   void Ask(QueryWorkspace* work) const { scene_.Query(*held_, X_WH_, options_, work); }
@@ -47,6 +55,26 @@ class Walk {
   [[nodiscard]] Scene& scene() { return scene_; }
 
  private:
+  // Gives the held part and half of the others faces as made.
+  void MakeFaces() {
+    const auto make = [this](const std::shared_ptr<const Shape>& shape) {
+      std::vector<FaceOffset> faces(shape->data().exact.faces.size());
+      for (FaceOffset& face : faces) {
+        face.uniform = random_.Uniform(-30e-6, 30e-6);
+      }
+      return FaceOffsets::Make(shape, faces).value();
+    };
+    const auto shapes = ListShapes();
+    for (std::uint32_t i = 0; i < scene_.size(); i += 2) {
+      const auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const auto& candidate) {
+        return candidate.get() == &scene_.shape(BodyId{i});
+      });
+      scene_.SetOffsets(BodyId{i}, make(*shape));
+    }
+    held_made_ = make(held_);
+    options_.held_offsets = held_made_.get();
+  }
+
   static const std::vector<std::shared_ptr<const Shape>>& ListShapes() {
     static const std::vector<std::shared_ptr<const Shape>> shapes = {
         Build(testing::Cup(3e-3, 10e-3, 5e-3, 20e-3)),
@@ -71,6 +99,8 @@ class Walk {
   Random random_;
   Scene scene_;
   std::shared_ptr<const Shape> held_;
+  std::shared_ptr<const FaceOffsets> held_made_;
+  bool is_as_made_{false};
   Pose X_WH_;
   double step_{0};
   QueryOptions options_;
@@ -168,6 +198,31 @@ TEST(BoundMemory, HasRoomForAQueryAndForgetsTheLeastUsed) {
   EXPECT_LT(find(1000).bounds[0], 0.0F);  // In the place of the first.
   EXPECT_EQ(find(1).bounds[0], 1.0F);
   EXPECT_LT(find(0).bounds[0], 0.0F);
+}
+
+TEST(BoundMemory, ASampleIsBeyondADistanceUntilTheShapesHaveMovedSoFar) {
+  BoundMemory memory;
+  const SampledPair pair{1, 2, 0, 0, false};
+  const auto find = [&memory, &pair](double x) {
+    memory.Begin();
+    return memory.Find(pair, Mat3::Identity(), Vec3(x, 0, 0), 0.1, 16);
+  };
+  BoundView view = find(0);
+  EXPECT_FALSE(memory.IsBeyond(view, 5, 0));
+  memory.SetFar(view, 5, 200e-6);
+  EXPECT_TRUE(memory.IsBeyond(view, 5, 50e-6));
+  EXPECT_FALSE(memory.IsBeyond(view, 5, 201e-6));
+  EXPECT_FALSE(memory.IsBeyond(view, 6, 50e-6));
+  view = find(140e-6);
+  EXPECT_TRUE(memory.IsBeyond(view, 5, 50e-6));
+  view = find(160e-6);
+  EXPECT_FALSE(memory.IsBeyond(view, 5, 50e-6));
+  // Faces made anew are another pair, and what was cleared is not known.
+  const SampledPair made{1, 2, 0, 0, false, 7, 0};
+  const BoundView other = memory.Find(made, Mat3::Identity(), Vec3::Zero(), 0.1, 16);
+  EXPECT_FALSE(memory.IsBeyond(other, 5, 0));
+  view = find(1);
+  EXPECT_FALSE(memory.IsBeyond(view, 5, 0));
 }
 
 TEST(BoundMemory, MotionIsNoLessThanThatOfAnyPoint) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fits/elastic_parts.h"
+
 namespace hvas::mates {
 namespace {
 
@@ -140,6 +142,43 @@ TEST(ElasticPartsTest, TheSideFileStatesThem) {
     {"part": "pin", "kind": "hook"}]})",
                                   "a.hvas.json");
   EXPECT_FALSE(kind);
+}
+
+TEST(ElasticPartsTest, ALipHasAForceOnceItsLengthAndThicknessAreKnown) {
+  product::ElasticPart seal;
+  seal.kind = ElasticKind::kLipSeal;
+  seal.free_size = 19.2e-3;
+  seal.modulus = 5e6;
+  EXPECT_EQ(
+      DescribeElastic(seal),
+      "19.2 mm wide when free, 5 MPa; no force, as its lip's length or thickness is not known");
+  seal.thickness = 1e-3;
+  seal.lip_root = -3e-3;
+  EXPECT_EQ(FindMissingSize(seal), "");
+  EXPECT_NEAR(CalcLipStiffness(seal), fits::CalcLipStiffness({9.6e-3, 3e-3, 1e-3, 5e6}), 1e-9);
+  EXPECT_NE(DescribeElastic(seal).find("lip 3 mm long, 1 mm thick, 19.2 mm wide when free"),
+            std::string::npos)
+      << DescribeElastic(seal);
+  seal.stiffness = 4e3;
+  EXPECT_EQ(CalcLipStiffness(seal), 4e3);
+}
+
+TEST(ElasticPartsTest, TheLengthOfALipIsStatedFromItsEdge) {
+  Product product = GasketOnHousing();
+  product.parts[1].name = "oil seal";
+  product.occurrences[1].path = "rig/oil seal";
+  product.occurrences[1].name = "oil seal";
+  StatedElastic stated = Stated("oil seal");
+  stated.kind = ElasticKind::kLipSeal;
+  stated.thickness = 1e-3;
+  stated.free_size = 19e-3;
+  EXPECT_FALSE(SetElasticParts({stated}, &product));
+  stated.lip_length = 4e-3;
+  const auto set = SetElasticParts({stated}, &product);
+  ASSERT_TRUE(set) << set.error().message;
+  ASSERT_EQ(product.elastic.size(), 1U);
+  EXPECT_NEAR(product.elastic[0].lip_length(), 4e-3, 1e-12);
+  EXPECT_EQ(product.elastic[0].free_size, 19e-3);
 }
 
 }  // namespace
