@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "contact/face_offsets.h"
 #include "contact/scene.h"
+#include "contact/shape_data.h"
 #include "contact/test/parts.h"
 
 namespace hvas::contact {
