@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/quad.h"
-
 namespace hvas::contact {
 namespace {
 
@@ -31,15 +29,15 @@ std::uint64_t KeyOf(std::uint32_t body, std::uint32_t scene_face, const Vec3& nh
          (static_cast<std::uint64_t>(scene_face) << 8U) | DirectionCell(nhat_S);
 }
 
+using Reaches = std::array<double, 8>;
+
 // How far a point is along eight directions of the plane of u and v, 45 degrees apart.
-std::array<float, 8> ReachesOf(const Vec3& u, const Vec3& v, const Vec3& p) {
+Reaches ReachesOf(const Vec3& u, const Vec3& v, const Vec3& p) {
   const double a = u.dot(p);
   const double b = v.dot(p);
-  const auto single_a = static_cast<float>(a);
-  const auto single_b = static_cast<float>(b);
-  const auto c = static_cast<float>(kDiagonal * (a + b));
-  const auto d = static_cast<float>(kDiagonal * (a - b));
-  return {single_a, -single_a, single_b, -single_b, c, -c, d, -d};
+  const double c = kDiagonal * (a + b);
+  const double d = kDiagonal * (a - b);
+  return {a, -a, b, -b, c, -c, d, -d};
 }
 
 }  // namespace
@@ -54,7 +52,7 @@ void ContactReducer::Clear() noexcept {
 
 void ContactReducer::Group::Clear() noexcept {
   least = std::numeric_limits<double>::infinity();
-  reach.fill(-std::numeric_limits<float>::infinity());
+  reach.fill(-std::numeric_limits<double>::infinity());
   roles.fill(0);
 }
 
@@ -120,20 +118,16 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
     return;
   }
   Group& group = groups_[number];
-  const std::array<float, kTangents> reach = ReachesOf(group.u, group.v, p_S);
-  const Quad low(reach.data());
-  const Quad high(reach.data() + 4);
-  const Quad known_low(group.reach.data());
-  const Quad known_high(group.reach.data() + 4);
+  const Reaches reach = ReachesOf(group.u, group.v, p_S);
+  unsigned further = 0;
+  double most = 0;
+  for (std::size_t k = 0; k < kTangents; ++k) {
+    further |= (reach[k] > group.reach[k] ? 1U : 0U) << k;
+    most = std::max(most, reach[k] - group.reach[k]);
+  }
   const bool is_deeper = contact.distance < group.least;
-  // Those that have got no further than what is known, of all tangents.
-  const auto within = [&](float by) {
-    return BitsAtMost(low, known_low + Quad(by)) | BitsAtMost(high, known_high + Quad(by)) << 4U;
-  };
-  constexpr unsigned kAll = (1U << kTangents) - 1;  // A definition.
-  const unsigned further = kAll & ~within(0);
   const bool matters = contact.is_screened
-                           ? within(kFurther) != kAll || contact.distance < group.least - kDeeper
+                           ? most > kFurther || contact.distance < group.least - kDeeper
                            : further != 0 || is_deeper;
   if (!matters) {
     return;
@@ -142,8 +136,9 @@ void ContactReducer::Add(const RawContact& contact, const Vec3& nhat_S, const Ve
   cells_[number][cell] = contact;
   group.Give(static_cast<Roles>(further << 1U | (is_deeper ? kDeepest : 0U)), cell);
   group.least = std::min(group.least, contact.distance);
-  Most(known_low, low).Store(group.reach.data());
-  Most(known_high, high).Store(group.reach.data() + 4);
+  for (std::size_t k = 0; k < kTangents; ++k) {
+    group.reach[k] = std::max(group.reach[k], reach[k]);
+  }
 }
 
 std::size_t ContactReducer::Select(std::span<RawContact> out) noexcept {

@@ -57,7 +57,7 @@ class ContactReducer {
 
  private:
   static constexpr double kDeeper = 20e-9;  ///< [m]: less is noise of the refined depths. A choice.
-  static constexpr float kFurther = 10e-6F;  ///< [m]: less changes no lever. A choice.
+  static constexpr double kFurther = 10e-6;  ///< [m]: less changes no lever. A choice.
   // Groups of normals on all bodies; twice as many places of the hash table; directions in which a
   // group keeps its furthest contact, 45 degrees apart.
   static constexpr std::size_t kMaxGroups = 256;
@@ -77,8 +77,8 @@ class ContactReducer {
     Vec3 u{Vec3::Zero()};
     Vec3 v{Vec3::Zero()};
     double least{0};
-    std::array<float, kTangents> reach{};  // In single precision, as kFurther is far more.
-    std::array<Roles, kCells> roles{};     // Of the contacts in its cells; 0: the cell is free.
+    std::array<double, kTangents> reach{};
+    std::array<Roles, kCells> roles{};  // Of the contacts in its cells; 0: the cell is free.
 
     void Clear() noexcept;
     [[nodiscard]] std::size_t FreeCell() const noexcept;
