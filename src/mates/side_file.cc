@@ -50,8 +50,8 @@ constexpr double kLargestCompliance_um = 1000;  // [um/N]: softer than any solid
 constexpr double kLargestGive_mm = 1000;        // [mm]: what gives more is no part to put in.
 constexpr double kMostCoils = 10'000;           // More wire than a part has: a choice.
 constexpr double kPascalsPerMegapascal = 1e6;   // By definition.
-constexpr double kStiffest_mpa = 2e6;           // [MPa]: diamond has 1.1e6.
-constexpr double kStiffest_n_per_mm = 10e6;     // [N/mm]: stiffer than a block of steel of 0.1 m.
+constexpr double kStiffestMaterial = 2e12;      // [Pa]: diamond has 1.1e12.
+constexpr double kStiffestSpring = 10e9;        // [N/m]: stiffer than a block of steel of 0.1 m.
 constexpr double kMostFaces = 4294967294;
 constexpr std::size_t kMostPlaces = 1000;  // of a measured diameter: one each 0.1 mm of 100 mm
 
@@ -150,18 +150,19 @@ constexpr std::array<std::string_view, 8> kElasticNames{"coil_spring", "disc_spr
 static_assert(kElasticNames.size() == static_cast<std::size_t>(product::ElasticKind::kLipSeal) + 1,
               "a kind of elastic part has no name here");
 
-constexpr std::array kElasticKeys{Text("part", true),
-                                  Choice("kind", kElasticNames, false),
-                                  Diameter("free_length_mm"),
-                                  Diameter("free_diameter_mm"),
-                                  Diameter("thickness_mm"),
-                                  Diameter("lip_length_mm"),
-                                  Diameter("outer_diameter_mm"),
-                                  Diameter("inner_diameter_mm"),
-                                  Number("active_coils", 0, kMostCoils, true),
-                                  Number("modulus_mpa", 0, kStiffest_mpa, true),
-                                  Number("stiffness_n_per_mm", 0, kStiffest_n_per_mm, true),
-                                  Note()};
+constexpr std::array kElasticKeys{
+    Text("part", true),
+    Choice("kind", kElasticNames, false),
+    Diameter("free_length_mm"),
+    Diameter("free_diameter_mm"),
+    Diameter("thickness_mm"),
+    Diameter("lip_length_mm"),
+    Diameter("outer_diameter_mm"),
+    Diameter("inner_diameter_mm"),
+    Number("active_coils", 0, kMostCoils, true),
+    Number("modulus_mpa", 0, kStiffestMaterial / kPascalsPerMegapascal, true),
+    Number("stiffness_n_per_mm", 0, kStiffestSpring* units::kMetresPerMillimetre, true),
+    Note()};
 
 /** One object of the file with its place in it. */
 struct Place {
