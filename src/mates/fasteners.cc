@@ -121,7 +121,9 @@ bool IsFlexible(const Product& product, OccurrenceId id) {
            kind == product::FlexibleKind::kRubber;
   };
   const product::ElasticPart* elastic = product::FindElastic(product, id);
-  const bool is_squeezed = elastic != nullptr && !IsPressedAlongAxis(elastic->kind);
+  // The seat of a shaft seal has a fit, whatever its lip does.
+  const bool is_squeezed = elastic != nullptr && !IsPressedAlongAxis(elastic->kind) &&
+                           elastic->kind != product::ElasticKind::kLipSeal;
   return is_squeezed || is_bent(product.part_of(id).name) ||
          is_bent(product.occurrences[id.index()].name);
 }
