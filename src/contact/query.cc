@@ -364,7 +364,7 @@ std::uint32_t BodyQuery::CalcStride(std::span<const Hit> hits, std::uint32_t lea
     }
     ++count;
     const std::uint32_t list = hit.list != kNoList ? hit.list : hit.zone & zone::kPayload;
-    if (hit.list != kNoList || (hit.zone & ~zone::kPayload) == zone::kList) {
+    if (hit.list != kNoList || IsOfList(hit)) {
       const double scans = FacesOfList(*field.shape, list) == nullptr ? kScansUnnamed : 1;
       triangles += scans * (begin[list + 1] - begin[list]);
     }

@@ -67,13 +67,23 @@ std::optional<fits::OpenRing> OpenRingOf(const Part& part) {
 
 }  // namespace
 
-void LimitSteepness(double spacing, std::vector<double>* given) {
+double FindKineticFriction(const product::Product& product, product::OccurrenceId a,
+                           product::OccurrenceId b) {
+  return fits::FindFriction(SurfaceOf(product.part_of(a).material),
+                            SurfaceOf(product.part_of(b).material), fits::FrictionLaw{})
+      .kinetic_coefficient;
+}
+
+void FinishGiven(double spacing, std::vector<double>* given) {
   const double most = kSteepest * spacing;
   for (std::size_t i = 1; i < given->size(); ++i) {
     (*given)[i] = std::max((*given)[i], (*given)[i - 1] - most);
   }
   for (std::size_t i = given->size() - 1; i > 0; --i) {
     (*given)[i - 1] = std::max((*given)[i - 1], (*given)[i] - most);
+  }
+  while (!given->empty() && given->back() == 0) {
+    given->pop_back();
   }
 }
 
@@ -116,20 +126,14 @@ std::shared_ptr<const haptics::GivingCurve> MakeGivingCurve(const product::Produ
   if (!curve->squeezed && !(curve->stiffness > 0)) {
     return nullptr;
   }
-  curve->friction =
-      fits::FindFriction(SurfaceOf(product.part_of(give.flexible).material),
-                         SurfaceOf(product.part_of(give.other).material), fits::FrictionLaw{})
-          .kinetic_coefficient;
+  curve->friction = FindKineticFriction(product, give.flexible, give.other);
   curve->spacing = samples.spacing;
   // Samples of the contact see the nearest way out of a thin wall; the width has all of it.
   const double scale = give.width > 0 ? give.width / deepest : 1.0;
   for (const double given : samples.given) {
     curve->given.push_back(scale * given);
   }
-  LimitSteepness(curve->spacing, &curve->given);
-  while (!curve->given.empty() && curve->given.back() == 0) {
-    curve->given.pop_back();
-  }
+  FinishGiven(curve->spacing, &curve->given);
   return curve;
 }
 

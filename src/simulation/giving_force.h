@@ -41,9 +41,13 @@ struct GivingSamples {
     const product::Product& product, const GivingPair& give, const GivingSamples& samples,
     const Bending* bending);
 
+/** Kinetic coefficient of the friction of two parts on each other. */
+[[nodiscard]] double FindKineticFriction(const product::Product& product, product::OccurrenceId a,
+                                         product::OccurrenceId b);
+
 /** Makes no slope of a curve steeper than 60 degrees, by what lies before it: faces that are drawn
- steeper have an edge that is not.
+ steeper have an edge that is not. Leaves out what gives nothing at its end.
  @param spacing  Of the samples [m]. @param given  As of haptics::GivingCurve. */
-void LimitSteepness(double spacing, std::vector<double>* given);
+void FinishGiven(double spacing, std::vector<double>* given);
 
 }  // namespace hvas::simulation

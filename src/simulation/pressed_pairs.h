@@ -20,9 +20,10 @@ struct PressedPair {
   std::vector<product::OccurrenceId> parts;  ///< What is pressed, one behind the other.
   product::OccurrenceId support;             ///< What the last of them stands on.
   product::OccurrenceId against;             ///< The part in its place to which `moved` comes.
-  double compression{0};                     ///< Compression of all, with `moved` in its place [m].
-  double force{0};                           ///< Force then; slit pin, sleeve: most, going in [N].
-  bool is_radial{false};                     ///< A hole or shaft presses it, all around.
+  /** Compression of all, with `moved` in its place; lip: most, on its way [m]. */
+  double compression{0};
+  double force{0};        ///< Force then; slit pin, sleeve, lip: most, going in [N].
+  bool is_radial{false};  ///< A hole or shaft presses or spreads it, all around.
   /** Radial: how far inner and outer radius grow in its place from what they are free [m]. */
   std::array<double, 2> growth{0, 0};
   std::string source;  ///< Closed form and source of the force.

@@ -4,12 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
-#include "fits/friction.h"
 #include "mates/elastic_parts.h"
-#include "simulation/fit_of_mate.h"
 #include "simulation/giving_force.h"
 #include "simulation/insert_walk.h"
 #include "simulation/pressed_pairs.h"
@@ -161,10 +158,7 @@ class LipSearch {
     pair.source = "lip as a short shell, Hetenyi";
     auto curve = std::make_shared<haptics::GivingCurve>();
     curve->stiffness = mates::CalcLipStiffness(*lip.seal);
-    curve->friction = fits::FindFriction(SurfaceOf(product_.part_of(own).material),
-                                         SurfaceOf(product_.part_of(lip.shaft.part).material),
-                                         fits::FrictionLaw{})
-                          .kinetic_coefficient;
+    curve->friction = FindKineticFriction(product_, own, lip.shaft.part);
     curve->spacing = until / kSpreadSteps;
     for (int i = 0; i < kSpreadSteps; ++i) {
       const double radius = lip.shaft.RadiusAt(lip.seal->lip_at + up * i * curve->spacing);
@@ -172,10 +166,7 @@ class LipSearch {
       pair.compression = std::max(pair.compression, std::min(spread, kMostSpread));
       curve->given.push_back(std::min(spread, kMostSpread));
     }
-    LimitSteepness(curve->spacing, &curve->given);
-    while (!curve->given.empty() && curve->given.back() == 0) {
-      curve->given.pop_back();
-    }
+    FinishGiven(curve->spacing, &curve->given);
     pair.force = haptics::CalcGivingPeak(*curve).in;
     pair.curve = std::move(curve);
     pairs_.push_back(std::move(pair));

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "fits/elastic_parts.h"
-#include "fits/friction.h"
-#include "simulation/fit_of_mate.h"
+#include "simulation/giving_force.h"
 #include "simulation/insert_walk.h"
 #include "simulation/pressed_pairs.h"
 
@@ -173,10 +172,7 @@ class SqueezeSearch {
         direction > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
     auto curve = std::make_shared<haptics::GivingCurve>();
     curve->stiffness = squeeze.stiffness;
-    curve->friction =
-        fits::FindFriction(SurfaceOf(product_.part_of(side.part->occurrence).material),
-                           SurfaceOf(product_.part_of(side.other).material), fits::FrictionLaw{})
-            .kinetic_coefficient;
+    curve->friction = FindKineticFriction(product_, side.part->occurrence, side.other);
     curve->spacing = until / kSqueezeSteps;
     for (int i = 0; i < kSqueezeSteps; ++i) {
       const double engaged = CalcEngaged(mate, direction * i * curve->spacing);

@@ -58,14 +58,6 @@ mates::StatedElastic FreeLength(const std::string& part, double length) {
   return stated;
 }
 
-std::shared_ptr<const Model> CompileStated(Product product) {
-  Diagnostics diagnostics;
-  auto model =
-      Compile(std::make_shared<Product>(std::move(product)), testing::FastOptions(), &diagnostics);
-  EXPECT_TRUE(model) << model.error().message;
-  return *model;
-}
-
 PartResult ResultOf(const testing::Session& session, OccurrenceId id) {
   for (const PartResult& result : session.run.results()) {
     if (result.occurrence == id) {
@@ -78,7 +70,7 @@ PartResult ResultOf(const testing::Session& session, OccurrenceId id) {
 
 TEST(PressedPairs, APistonPressesTheSpringUnderItByWhatIsStated) {
   const double drawn = product::testing::MakeCoil(kCoil).length;
-  const auto model = CompileStated(PistonOnSpring({FreeLength("spring", drawn + 6e-3)}));
+  const auto model = testing::CompileFast(PistonOnSpring({FreeLength("spring", drawn + 6e-3)}));
   ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
   ASSERT_EQ(model->presses.size(), 1U);
   const PressedPair& pair = model->presses[0];
@@ -103,10 +95,10 @@ TEST(PressedPairs, APistonPressesTheSpringUnderItByWhatIsStated) {
 }
 
 TEST(PressedPairs, ASpringAsDrawnOrARigidOneIsNotPressed) {
-  EXPECT_TRUE(CompileStated(PistonOnSpring({}))->presses.empty());
+  EXPECT_TRUE(testing::CompileFast(PistonOnSpring({}))->presses.empty());
   Product rigid = PistonOnSpring({});
   rigid.elastic.clear();
-  EXPECT_TRUE(CompileStated(std::move(rigid))->presses.empty());
+  EXPECT_TRUE(testing::CompileFast(std::move(rigid))->presses.empty());
 }
 
 /** A block, a gasket ring on it, another on that, and a lid. */
@@ -129,7 +121,7 @@ Product LidOnGaskets(double second_free) {
 }
 
 TEST(PressedPairs, GasketsOneBehindTheOtherArePressedByOneForce) {
-  const auto model = CompileStated(LidOnGaskets(2.2e-3));
+  const auto model = testing::CompileFast(LidOnGaskets(2.2e-3));
   ASSERT_EQ(model->presses.size(), 1U);
   const PressedPair& pair = model->presses[0];
   EXPECT_EQ(pair.moved, OccurrenceId(3));
@@ -144,7 +136,7 @@ TEST(PressedPairs, GasketsOneBehindTheOtherArePressedByOneForce) {
 
 // The lid presses; the gaskets themselves are put on without a force.
 TEST(PressedPairs, WhatIsPutOnAGasketAsDrawnMeetsNoForce) {
-  EXPECT_TRUE(CompileStated(LidOnGaskets(2e-3))->presses.empty());
+  EXPECT_TRUE(testing::CompileFast(LidOnGaskets(2e-3))->presses.empty());
 }
 
 // A pin of ISO 8752, drawn at its nominal 4 mm, is closed by 0.25 mm of radius, more than it bears
@@ -162,7 +154,7 @@ TEST(SqueezedPairs, ASlitPinIsPushedInAgainstTheFrictionOfItsRadialForce) {
   ASSERT_TRUE(mates::SetElasticParts({}, &product));
   testing::Complete(&product);
   ASSERT_EQ(product.elastic.size(), 1U);
-  const auto model = CompileStated(std::move(product));
+  const auto model = testing::CompileFast(std::move(product));
   ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
   ASSERT_EQ(model->presses.size(), 1U);
   const PressedPair& pair = model->presses[0];
@@ -202,7 +194,7 @@ TEST(SqueezedPairs, ASleeveOfRubberIsSqueezedByTheShaftThatComesLast) {
   const auto set = mates::SetElasticParts({FreeLength("rubber bushing", 19e-3)}, &product);
   ASSERT_TRUE(set) << set.error().message;
   testing::Complete(&product);
-  const auto model = CompileStated(std::move(product));
+  const auto model = testing::CompileFast(std::move(product));
   ASSERT_TRUE(model->sequence.gaps.empty()) << model->sequence.gaps[0].reason;
   ASSERT_EQ(model->presses.size(), 2U);
   const PressedPair& ring = model->presses[0];

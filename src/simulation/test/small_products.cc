@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <gtest/gtest.h>
+
 #include "mates/infer.h"
 #include "product/features.h"
 #include "product/test/mesh_mass.h"
@@ -266,6 +268,13 @@ CompileOptions FastOptions() {
   options.threads = 2;
   options.way_looks = 0;
   return options;
+}
+
+std::shared_ptr<const Model> CompileFast(Product product) {
+  Diagnostics diagnostics;
+  auto model = Compile(std::make_shared<Product>(std::move(product)), FastOptions(), &diagnostics);
+  EXPECT_TRUE(model) << model.error().message;
+  return *model;
 }
 
 Product PegInCarrierInCup() {

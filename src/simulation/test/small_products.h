@@ -82,4 +82,8 @@ const std::shared_ptr<const Model>& PegInBlockModel();
 /** No search for ways that turn, for speed. */
 CompileOptions FastOptions();
 
+/** The model of a product, compiled with FastOptions(); a failure of the test where there is none.
+ */
+std::shared_ptr<const Model> CompileFast(Product product);
+
 }  // namespace hvas::simulation::testing

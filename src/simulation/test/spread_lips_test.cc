@@ -105,14 +105,6 @@ Product ShaftThroughSeal(double edge, const std::vector<mates::StatedElastic>& s
   return product;
 }
 
-std::shared_ptr<const Model> CompileLip(Product product) {
-  Diagnostics diagnostics;
-  auto model =
-      Compile(std::make_shared<Product>(std::move(product)), testing::FastOptions(), &diagnostics);
-  EXPECT_TRUE(model) << model.error().message;
-  return *model;
-}
-
 const PartResult* FindResult(const testing::Session& session, OccurrenceId id) {
   const auto& results = session.run.results();
   const auto found = std::find_if(results.begin(), results.end(), [id](const PartResult& result) {
@@ -154,15 +146,15 @@ void ExpectSpread(const std::shared_ptr<const Model>& model, double spread) {
 }
 
 TEST(SpreadLips, AShaftSpreadsALipThatIsDrawnNarrower) {
-  ExpectSpread(CompileLip(ShaftThroughSeal(kShaftRadius - 0.4e-3, {})), 0.4e-3);
+  ExpectSpread(testing::CompileFast(ShaftThroughSeal(kShaftRadius - 0.4e-3, {})), 0.4e-3);
 }
 
 TEST(SpreadLips, ALipThatIsDrawnOnItsShaftIsSpreadByWhatIsStated) {
-  EXPECT_TRUE(CompileLip(ShaftThroughSeal(kShaftRadius, {}))->presses.empty());
+  EXPECT_TRUE(testing::CompileFast(ShaftThroughSeal(kShaftRadius, {}))->presses.empty());
   mates::StatedElastic stated;
   stated.part = "lip seal";
   stated.free_size = 19.2e-3;
-  const auto model = CompileLip(ShaftThroughSeal(kShaftRadius, {stated}));
+  const auto model = testing::CompileFast(ShaftThroughSeal(kShaftRadius, {stated}));
   ExpectSpread(model, 0.4e-3);
 
   // It is drawn 0.4 mm narrower until its shaft is there, and then as in the file.
