@@ -152,7 +152,9 @@ std::vector<std::string> DescribeRendering(const device::DeviceInfo& info,
 
 device::DeviceState ReadDevice(device::Device* device) noexcept {
   device::DeviceState state = device->Read();
-  state.sample_ns = state.t_ns;
+  if (state.sample_ns == 0) {
+    state.sample_ns = state.t_ns;  // Such a driver keeps the time of a sample that it repeats.
+  }
   return state;
 }
 

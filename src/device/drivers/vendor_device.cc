@@ -82,6 +82,7 @@ DeviceState VendorDevice::Read() noexcept {
     }
   }
   state_.t_ns = now_ns;
+  state_.sample_ns = last_new_ns_;
   if (state_.condition != Condition::kReady) {
     force_from_ns_ = now_ns + (state_.condition == Condition::kNoForce ? kPauseNs : kSettleNs);
   } else if (now_ns < force_from_ns_) {

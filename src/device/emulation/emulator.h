@@ -20,6 +20,10 @@ struct EmulatorOptions {
   bool is_live{false};  ///< Runs by the machine's clock, on a thread of its own; else by Advance.
 };
 
+/** The lag behind the machine's clock beyond which a live emulator has been asleep, as its process
+ may be; it then goes on from where it was: a choice. */
+inline constexpr std::int64_t kMaxLagNs = 20'000'000;
+
 /** An emulator of the devices of one driver: the vendor's interface (a stub library with the same
  symbols, or a server with the same protocol) around an EmulatedDevice. The real driver opens it
  through surroundings() and address(), as it would a real device. */

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -11,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "device/drivers/dynamic_library.h"
 #include "device/emulation/stub_library.h"
 
@@ -52,6 +54,42 @@ StubTraits TraitsOf(const char* model, const LibraryManners& manners) {
   return traits;
 }
 
+/** A device that runs by the machine's clock. Whoever reads or commands it finds it where it is by
+ then, however late the emulator's own thread may be: a real handle does not wait for a thread. */
+class LivePort final : public EmulatedPort {
+ public:
+  explicit LivePort(EmulatedDevice* device) : device_(device), last_ns_(MonotonicNs()) {}
+
+  [[nodiscard]] EmulatedSample Sense() const override {
+    CatchUp();
+    return device_->Sense();
+  }
+
+  void Command(const spatial::Wrench& F_H_D) override {
+    CatchUp();
+    device_->Command(F_H_D);
+  }
+
+  [[nodiscard]] DeviceProfile profile() const override { return device_->profile(); }
+
+  /** Moves the device on to the present. Any thread. */
+  void CatchUp() const {
+    const std::scoped_lock lock(mutex_);
+    const std::int64_t now_ns = MonotonicNs();
+    if (now_ns - last_ns_ >= kLeastNs) {
+      device_->Advance(std::min(now_ns - last_ns_, kMaxLagNs));
+      last_ns_ = now_ns;
+    }
+  }
+
+ private:
+  static constexpr std::int64_t kLeastNs = 100'000;  // Step of the device's mechanics.
+
+  EmulatedDevice* device_;
+  mutable std::mutex mutex_;
+  mutable std::int64_t last_ns_;
+};
+
 class LibraryEmulator final : public Emulator {
  public:
   LibraryEmulator(const Kind& kind, const StubEntry& stub, const EmulatorOptions& options,
@@ -61,7 +99,8 @@ class LibraryEmulator final : public Emulator {
     const bool has_model =
         known != nullptr && known->driver == kind.driver && !known->models.empty();
     model_ = has_model ? known->models.front() : kind.model;
-    number_ = stub_.attach(&device_, TraitsOf(model_.c_str(), manners));
+    EmulatedPort* const port = options.is_live ? static_cast<EmulatedPort*>(&live_) : &device_;
+    number_ = stub_.attach(port, TraitsOf(model_.c_str(), manners));
     surroundings_.library_folders = {StubFolder()};
     surroundings_.root = StubFolder() / "no-machine";
     surroundings_.clock = options.is_live ? &SystemClock() : &clock_;
@@ -106,19 +145,17 @@ class LibraryEmulator final : public Emulator {
   static constexpr std::int64_t kTickNs = 1'000'000;  // Of the vendors' own loops.
 
   void Run() {
-    std::int64_t last_ns = MonotonicNs();
     while (!is_stopping_.load(std::memory_order_acquire)) {
       std::this_thread::sleep_for(std::chrono::nanoseconds(kTickNs));
-      const std::int64_t now_ns = MonotonicNs();
-      device_.Advance(now_ns - last_ns);
-      stub_.tick(number_, now_ns);
-      last_ns = now_ns;
+      live_.CatchUp();
+      stub_.tick(number_, MonotonicNs());
     }
   }
 
   const Kind& kind_;
   const StubEntry& stub_;
   EmulatedDevice device_;
+  LivePort live_{&device_};
   std::string model_;
   int number_{-1};
   VirtualClock clock_;

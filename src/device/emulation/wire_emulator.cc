@@ -21,7 +21,6 @@ namespace hvas::device {
 namespace {
 
 constexpr std::int64_t kStepNs = 1'000'000;            // The haptic loop's period.
-constexpr std::int64_t kMaxLagNs = 20'000'000;         // beyond it a live emulator has been asleep
 constexpr auto kNap = std::chrono::microseconds(200);  // A fifth of a period.
 
 class WireEmulator final : public Emulator {

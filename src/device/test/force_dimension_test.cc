@@ -72,6 +72,19 @@ TEST(ForceDimensionTest, ASampleThatIsReusedIsNoError) {
   }
 }
 
+TEST(ForceDimensionTest, ASampleThatIsReusedKeepsItsTime) {
+  Rig rig(kForceDimension, Sigma());
+  const DeviceState last = rig.Run(400);
+  EXPECT_EQ(last.sample_ns, last.t_ns);
+  rig.emulated().SetFault(Fault::kStalled);
+  const DeviceState again = rig.Run(2);
+  EXPECT_EQ(again.sample_ns, last.sample_ns);
+  EXPECT_GT(again.t_ns, last.t_ns);
+  rig.emulated().SetFault(Fault::kNone);
+  const DeviceState next = rig.Run(1);
+  EXPECT_EQ(next.sample_ns, next.t_ns);
+}
+
 TEST(ForceDimensionTest, TheVendorsWatchdogCutsForceWithin20MillisecondsAndIsRecoveredFrom) {
   Rig rig(kForceDimension, Sigma());
   rig.Run(400, Push);

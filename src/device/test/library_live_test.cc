@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "base/clock.h"
 #include "base/test/await_true.h"
 #include "device/test/live_rig.h"
 
@@ -30,6 +31,24 @@ TEST_P(LibraryLiveTest, ADeviceThatIsUnpluggedIsTakenUpAgainOffTheHapticThread) 
   device->reset();
   const auto force = [&] { return emulator->device().truth().command.f.norm(); };
   EXPECT_TRUE(hvas::testing::AwaitTrue([&] { return force() == 0; }));
+}
+
+TEST(EmulatorLiveTest, HandleIsWhereItIsByNowHoweverLateTheEmulatorsThreadIs) {
+  DeviceProfile profile = ProfileNamed("sigma7");
+  profile.rate_hz = 8000;
+  const auto emulator = StartLive(kForceDimension, profile);
+  auto device = OpenEmulated(kForceDimension, *emulator);
+  ASSERT_TRUE(device.has_value());
+  std::int64_t before_ns = 0;
+  for (int k = 0; k < 200; ++k) {  // Twice as often as the emulator's thread moves the handle.
+    const std::int64_t end_ns = MonotonicNs() + 500'000;
+    while (MonotonicNs() < end_ns) {
+    }
+    const DeviceState state = (*device)->Read();
+    EXPECT_EQ(state.sample_ns, state.t_ns);
+    EXPECT_GT(state.sample_ns, before_ns);
+    before_ns = state.sample_ns;
+  }
 }
 
 TEST_P(LibraryLiveTest, ADeviceCanBeClosedWhileItIsGone) {

@@ -13,13 +13,17 @@ namespace hvas::device::testing {
 inline constexpr int kMostTicks = 60'000;
 
 /** Starts the emulator of a driver with its threads in real time; nobody pushes its handle. */
-inline std::unique_ptr<Emulator> StartLive(const LibraryCase& which) {
+inline std::unique_ptr<Emulator> StartLive(const LibraryCase& which, const DeviceProfile& profile) {
   EmulatorOptions options;
-  options.profile = ProfileNamed(which.profile);
+  options.profile = profile;
   options.is_live = true;
   auto emulator = StartCase(which, options);
   emulator->device().SetHand({});
   return emulator;
+}
+
+inline std::unique_ptr<Emulator> StartLive(const LibraryCase& which) {
+  return StartLive(which, ProfileNamed(which.profile));
 }
 
 /** Ticks until a device is in a condition; false when it never is. */
