@@ -83,6 +83,17 @@ class LiveRunTest : public ::testing::Test {
     return frame.ticks.empty() ? 0 : frame.ticks[0].F_H_D.f.norm();
   }
 
+  /** What the safety gate did last, as a test that fails tells. */
+  [[nodiscard]] std::string Reasons() const {
+    const simulation::Frame frame = listener_.frame();
+    std::string reasons = "the safety gate:";
+    const std::uint32_t now = frame.ticks.empty() ? 0 : frame.ticks[0].gate_actions;
+    for (const haptics::GateAction action : haptics::ListNewActions(0, now)) {
+      reasons += std::string(" ") + haptics::ToString(action) + ";";
+    }
+    return reasons;
+  }
+
   std::shared_ptr<const simulation::Model> model_;
   Listener listener_;
   std::shared_ptr<device::OpenedDevice> device_;
@@ -98,7 +109,7 @@ TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
   run_->Take(0, step, Pose(p_WH));
   ASSERT_TRUE(MoveUntil(p_WH, [this] { return run_->is_holding(0); }));
   const Vec3 p_below = p_WH - Vec3(0, 0, 0.01);  // into the table
-  ASSERT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; }));
+  ASSERT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; })) << Reasons();
   SetFault(device::Fault::kUnplugged);
   ASSERT_TRUE(
       MoveUntil(p_below, [this] { return listener_.condition() != device::Condition::kReady; }));
@@ -107,7 +118,7 @@ TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
   SetFault(device::Fault::kNone);
   EXPECT_TRUE(
       MoveUntil(p_below, [this] { return listener_.condition() == device::Condition::kReady; }));
-  EXPECT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; }));
+  EXPECT_TRUE(MoveUntil(p_below, [this] { return force() > 0.5; })) << Reasons();
 }
 
 TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
