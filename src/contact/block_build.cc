@@ -483,7 +483,7 @@ bool BlockBuilder::MayBeClosest(const Candidate& candidate, const TrianglePoint&
 
 void BlockBuilder::DecideZone(const Vec3& centre, const NearList& list, Zone* out) {
   if (IsSmooth(list)) {
-    out->code = zone::kSmooth | data_.mesh.face[hint_];
+    out->code = zone::kSmooth | hint_;
     return;
   }
   kept_ = list;
@@ -495,7 +495,7 @@ void BlockBuilder::DecideZone(const Vec3& centre, const NearList& list, Zone* ou
   out->end = static_cast<std::uint32_t>(listed.size());
 }
 
-// Freeform faces that go over into each other without an edge have no distance but the field's.
+// Freeform faces that go over into each other without an edge: one of their triangles leads to all.
 bool BlockBuilder::IsSmooth(const NearList& list) const {
   return std::all_of(list.begin(), list.end(), [&](const NearTriangle& entry) {
     const auto& kinds = data_.mesh.edge_kind[entry.triangle];

@@ -231,12 +231,18 @@ class Layer {
     }
     auto& nodes = data_.field.nodes;
     auto& zones = data_.exact.zones;
-    const std::array checksums{ChecksumOf(block.nodes), ChecksumOf(codes)};
+    std::array<std::uint32_t, kZonesPerBlock> faces{};
+    std::transform(codes.begin(), codes.end(), faces.begin(),
+                   [this](std::uint32_t code) { return WithoutTriangle(code); });
+    const std::array checksums{ChecksumOf(block.nodes), ChecksumOf(faces)};
     const auto count = static_cast<std::uint32_t>(zones.size() / kZonesPerBlock);
     const std::uint32_t number =
         blocks_.FindOrAdd(ChecksumOf(checksums), count, [&](std::uint32_t other) {
           const auto first = static_cast<std::ptrdiff_t>(other);
-          return std::equal(codes.begin(), codes.end(), zones.begin() + kZonesPerBlock * first) &&
+          return std::equal(faces.begin(), faces.end(), zones.begin() + kZonesPerBlock * first,
+                            [this](std::uint32_t face, std::uint32_t code) {
+                              return face == WithoutTriangle(code);
+                            }) &&
                  std::equal(block.nodes.begin(), block.nodes.end(),
                             nodes.begin() + kBlockNodes * first);
         });
@@ -256,6 +262,12 @@ class Layer {
   }
 
  private:
+  // The code by which blocks are equal: any triangle of a freeform face will do.
+  [[nodiscard]] std::uint32_t WithoutTriangle(std::uint32_t code) const {
+    const bool is_smooth = (code & ~zone::kPayload) == zone::kSmooth;
+    return is_smooth ? zone::kSmooth | data_.mesh.face[code & zone::kPayload] : code;
+  }
+
   static constexpr double kListReach = 8;  // Largest distance that is told apart, in voxels.
 
   // Zones with the same triangles share a list: its distances are the least in any of them. Until

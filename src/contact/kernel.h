@@ -77,13 +77,14 @@ struct FaceForm {
   Kind kind{Kind::kNone};  ///< None: single precision is not good enough, or no such surface.
 };
 
-/** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a face
- or a list. */
+/** What decides the distance in a cube of 2^3 cells. The upper two bits say how, the rest is a
+ face, a triangle or a list. */
 namespace zone {
 inline constexpr std::uint32_t kPayload = 0x3fffffffU;  // The two highest bits are the kind.
 inline constexpr std::uint32_t kExact = 0x00000000U;    ///< One analytic face.
-inline constexpr std::uint32_t kSmooth = 0x40000000U;   ///< One face without an exact distance.
-inline constexpr std::uint32_t kList = 0x80000000U;     ///< Several: the triangles decide.
+inline constexpr std::uint32_t kSmooth =
+    0x40000000U;                                     ///< Freeform faces; the payload is a triangle.
+inline constexpr std::uint32_t kList = 0x80000000U;  ///< Several: the triangles decide.
 inline constexpr std::uint32_t kFar =
     0xc0000000U;  ///< Far from the surface; payload: nearest face.
 }  // namespace zone

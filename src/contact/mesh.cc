@@ -251,6 +251,36 @@ ClosestKernels ChooseClosestKernels() noexcept {
   return {&CalcFourClosestScalar, &CalcEightClosestScalar};
 }
 
+std::uint32_t Mesh::NeighbourOn(std::uint32_t triangle, std::uint32_t on_face) const noexcept {
+  const auto& around = neighbour[triangle];
+  const auto* const found = std::find_if(around.begin(), around.end(), [&](std::uint32_t other) {
+    return other != kNoFace && face[other] == on_face;
+  });
+  return found != around.end() ? *found : kNoFace;
+}
+
+std::uint32_t Mesh::AroundOn(std::uint32_t triangle, std::size_t k,
+                             std::uint32_t on_face) const noexcept {
+  constexpr int kMost = 32;  // Triangles around a corner, each way: a choice.
+  const std::uint32_t corner = triangles[triangle][k];
+  for (const std::size_t turn : {0U, 2U}) {
+    std::uint32_t t = triangle;
+    std::size_t at = k;
+    for (int i = 0; i < kMost; ++i) {
+      t = neighbour[t][(at + turn) % 3];
+      if (t == kNoFace || t == triangle) {
+        break;
+      }
+      if (face[t] == on_face) {
+        return t;
+      }
+      const auto* const found = std::find(triangles[t].begin(), triangles[t].end(), corner);
+      at = static_cast<std::size_t>(found - triangles[t].begin()) % 3;
+    }
+  }
+  return kNoFace;
+}
+
 Vec3 Mesh::Pseudonormal(std::uint32_t triangle, TriangleFeature feature) const noexcept {
   if (feature == TriangleFeature::kInside) {
     return NormalOf(triangle);
@@ -311,6 +341,9 @@ Mesh KeepTriangles(const Mesh& mesh, const std::vector<bool>& is_wanted,
     kept.normals.push_back(mesh.normals[t]);
     kept.neighbour.push_back(mesh.neighbour[t]);
     kept.edge_kind.push_back(mesh.edge_kind[t]);
+    if (!mesh.bends.empty()) {
+      kept.bends.push_back(mesh.bends[t]);
+    }
     for (std::uint32_t& v : kept.triangles.back()) {
       if (vertex[v] == kNoFace) {
         vertex[v] = static_cast<std::uint32_t>(kept.vertices.size());

@@ -124,6 +124,9 @@ struct Mesh {
   std::vector<ShortVec3> vertex_normals;  ///< Angle-weighted pseudonormals, not unit.
   std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< Both faces of a kOnEdge.
   std::vector<std::uint8_t> is_vertex_open;
+  /** Each triangle's bends, zero on analytic faces (contact/curved.h); empty where no face is
+   freeform. */
+  std::vector<std::array<ShortVec3, 3>> bends;
   bool is_closed{true};
 
   [[nodiscard]] Vec3 NormalOf(std::uint32_t triangle) const noexcept {
@@ -154,6 +157,14 @@ struct Mesh {
     return other == kNoFace || face[other] != face[triangle] ||
            edge_kind[triangle][k] != EdgeKind::kSmooth;
   }
+
+  /** Of the triangles across a triangle's edges, one of a face; kNoFace where none is. */
+  [[nodiscard]] std::uint32_t NeighbourOn(std::uint32_t triangle,
+                                          std::uint32_t on_face) const noexcept;
+
+  /** Of the triangles around corner k of a triangle, one of a face; kNoFace where none is found. */
+  [[nodiscard]] std::uint32_t AroundOn(std::uint32_t triangle, std::size_t k,
+                                       std::uint32_t on_face) const noexcept;
 
   /** The pseudonormal of a feature (not unit): (p - q) . n > 0 exactly when p is outside, for the
    closest feature of a closed mesh; Baerentzen and Aanaes, IEEE TVCG 11(3), 2005. */

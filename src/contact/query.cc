@@ -514,6 +514,8 @@ bool BodyQuery::AddScreened(const SampledShell& sampled, const Hit& hit, const S
     return false;
   }
   contact->is_screened = true;
+  contact->is_rough = false;
+  contact->triangle = kNoFace;
   contact->is_exact = true;
   contact->distance = distance;
   contact->gradient = gradient;
@@ -545,6 +547,8 @@ void BodyQuery::AddRefined(const SampledShell& sampled, const Hit& hit, const Sa
     return;
   }
   contact->is_screened = false;
+  contact->is_rough = r.is_rough;
+  contact->triangle = r.triangle;
   contact->is_exact = r.is_exact;
   contact->distance = r.distance + contact->allowance;
   contact->gradient = r.gradient;
@@ -607,6 +611,7 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
   contact.is_reverse = kIsReverse;
   FaceFilter filter;
   filter.limit = margin_ + (remembers ? kLookedBeyond : 0);
+  filter.allows_rough = true;
   const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
   const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
   const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);

@@ -21,9 +21,11 @@ struct RawContact {
   std::uint32_t point{0};  ///< Index in the shell that it came from, or kFixedPoint.
   std::uint32_t held_face{0};
   std::uint32_t scene_face{0};
+  std::uint32_t triangle{kFixedPoint};  ///< Of a freeform face of the field, near it; else none.
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
   bool is_exact{false};
   bool is_screened{false};  ///< Distance and gradient are in single precision, to kScreened.
+  bool is_rough{false};     ///< A better distance is to be had; see Refined.
   double allowance{0};      ///< What `distance` has more than the shapes' [m]; see Allowance.
   float sparsity{1};        ///< Samples of the shell for each one that was tested here.
 };

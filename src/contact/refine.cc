@@ -22,8 +22,13 @@ Vec3 DirectionOf(const Hit& field, const Vec3& p) {
 }
 
 Refined Trilinear(const Hit& field, const Vec3& p) {
-  return {
-      static_cast<double>(field.distance), DirectionOf(field, p), kNoFace, kNoFace, false, true};
+  return {static_cast<double>(field.distance),
+          DirectionOf(field, p),
+          kNoFace,
+          kNoFace,
+          kNoFace,
+          false,
+          true};
 }
 
 struct Closest {
@@ -66,8 +71,33 @@ SolidFeature FeatureOf(const Mesh& mesh, const Closest& closest) {
   return result;
 }
 
+// The distance from the smooth surface of freeform faces near a triangle. False where it has no
+// foot of p.
+bool FromCurved(const Shape::Data& shape, std::uint32_t triangle, const Vec3& p, Refined* out) {
+  CurvedPoint foot;
+  if (!FindFoot(shape.mesh, triangle, p, FootOn::kSurface, &foot)) {
+    return false;
+  }
+  *out = {};
+  out->distance = (p - foot.q).dot(foot.normal);
+  out->gradient = foot.normal;
+  out->face = shape.mesh.face[foot.triangle];
+  out->triangle = foot.triangle;
+  out->is_exact = true;
+  return true;
+}
+
+bool IsFreeform(const Shape::Data& shape, std::uint32_t face) {
+  return face != kNoFace && shape.exact.faces[face].kind == spatial::SurfaceKind::kFreeform;
+}
+
+// Whether a distance that is wrong by no more than `error` is good enough.
+bool IsRoughEnough(const FaceFilter& filter, double distance, double error) {
+  return filter.allows_rough && distance > 2 * error;
+}
+
 Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t face,
-                 const Vec3& p, double sign, const Hit& field) {
+                 const Vec3& p, double sign, const Hit& field, const FaceFilter& filter) {
   Refined result;
   result.face = face;
   const double mesh_distance = std::sqrt(closest.squared);
@@ -79,6 +109,13 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
     result.is_exact = true;
     return result;
   }
+  const bool is_freeform = IsFreeform(shape, face);
+  const bool is_rough = IsRoughEnough(filter, sign * mesh_distance, tolerance);
+  if (is_freeform && !is_rough && FromCurved(shape, closest.triangle, p, &result)) {
+    return result;
+  }
+  result.face = face;
+  result.is_rough = is_freeform && is_rough;
   result.distance = sign * mesh_distance;
   const bool is_off = mesh_distance > 1e3 * kOnFeature;
   result.gradient =
@@ -90,24 +127,35 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
 }
 
 Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
-                 const Vec3& p, double sign) {
+                 const Vec3& p, double sign, const FaceFilter& filter) {
   Refined result;
   result.face = feature.face;
   result.other_face = feature.other_face;
   Vec3 q = closest.q;
   const Vec3 normal = shape.mesh.Pseudonormal(closest.triangle, closest.feature).normalized();
-  if (feature.kind == VertexKind::kOnEdge) {
-    const double tolerance =
-        4 * (shape.exact.deviation[feature.face] + shape.exact.deviation[feature.other_face]) +
-        kOnFeature;
+  const double tolerance =
+      feature.kind == VertexKind::kOnEdge
+          ? 4 * (shape.exact.deviation[feature.face] + shape.exact.deviation[feature.other_face]) +
+                kOnFeature
+          : 0;
+  const bool is_freeform = IsFreeform(shape, feature.face) || IsFreeform(shape, feature.other_face);
+  result.is_rough =
+      is_freeform && IsRoughEnough(filter, sign * std::sqrt(closest.squared), tolerance);
+  if (feature.kind == VertexKind::kOnEdge && !result.is_rough) {
     Vec3 on_curve = q;
-    if (ProjectOnEdge({shape, nullptr, feature.face}, {shape, nullptr, feature.other_face}, p,
-                      &on_curve) &&
+    const auto index = static_cast<std::size_t>(closest.feature);
+    const std::uint32_t other =
+        !is_freeform ? kNoFace
+        : closest.feature <= TriangleFeature::kEdge2
+            ? shape.mesh.neighbour[closest.triangle][index - 1]
+            : shape.mesh.AroundOn(closest.triangle, index - 4, feature.other_face);
+    if (ProjectOnEdge({shape, nullptr, feature.face, closest.triangle},
+                      {shape, nullptr, feature.other_face, other}, p, &on_curve) &&
         std::abs((p - on_curve).norm() - std::sqrt(closest.squared)) <= tolerance) {
       q = on_curve;
       result.is_exact = true;
     }
-  } else {
+  } else if (feature.kind == VertexKind::kCorner) {
     result.is_exact = true;  // Corners are where the mesh has them.
   }
   const double distance = (p - q).norm();
@@ -213,15 +261,15 @@ class ZoneList {
 };
 
 Refined FromFeature(const Shape::Data& shape, const Closest& closest, const SolidFeature& feature,
-                    const Vec3& p, const Hit& field) {
+                    const Vec3& p, const Hit& field, const FaceFilter& filter) {
   const Vec3 normal = shape.mesh.Pseudonormal(closest.triangle, closest.feature);
   double sign = (p - closest.q).dot(normal) >= 0 ? 1 : -1;
   if (shape.mesh.IsOpenAt(closest.triangle, closest.feature)) {
     sign = field.distance >= 0 ? 1 : -1;
   }
   return feature.kind == VertexKind::kSmooth
-             ? FromFace(shape, closest, feature.face, p, sign, field)
-             : FromEdge(shape, closest, feature, p, sign);
+             ? FromFace(shape, closest, feature.face, p, sign, field, filter)
+             : FromEdge(shape, closest, feature, p, sign, filter);
 }
 
 // True where the closest feature lies on a concave edge between a kept face and an ignored one. At
@@ -267,13 +315,13 @@ Refined WithoutIgnored(const Shape::Data& shape, const ZoneList& list, const Vec
     result.is_continued = true;
     return result;
   }
-  const Refined result = FromFeature(shape, closest, feature, p, field);
+  const Refined result = FromFeature(shape, closest, feature, p, field, filter);
   return result.distance >= 0 ? result : Nothing();
 }
 
 }  // namespace
 
-bool ProjectOnEdge(const FaceSurface& a, const FaceSurface& b, const Vec3& p, Vec3* q) noexcept {
+bool ProjectOnEdge(FaceSurface a, FaceSurface b, const Vec3& p, Vec3* q) noexcept {
   constexpr int kMaxSteps = 6;          // Newton's error squares in each: a choice.
   constexpr double kConverged = 1e-11;  // [m]: far below what is felt. A choice.
   Vec3 x = *q;
@@ -361,7 +409,7 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
     if (filter.Drops(feature.face) || filter.Drops(feature.other_face)) {
       return WithoutIgnored(shape, list, p, filter, reach, field);
     }
-    const Refined from_mesh = FromFeature(shape, closest, feature, p, field);
+    const Refined from_mesh = FromFeature(shape, closest, feature, p, field, filter);
     // Beside a round edge the chords of the mesh go a little too far.
     const bool is_too_far =
         from_surfaces.is_valid &&
@@ -369,17 +417,25 @@ Refined Refine(const Shape::Data& shape, const Vec3& p, const Hit& field,
                                     : from_mesh.distance > from_surfaces.distance + kOnFeature);
     return is_too_far ? from_surfaces : from_mesh;
   }
-  if (filter.Drops(payload)) {
+  const std::uint32_t face = at.FaceIn(shape.mesh);
+  if (filter.Drops(face)) {
     return Nothing();
   }
   if ((at.code & ~zone::kPayload) == zone::kExact) {
     const auto exact = CalcFaceDistance(shape.exact, payload, p);
     if (exact.is_valid) {
-      return {exact.distance, exact.gradient, payload, kNoFace, true, true};
+      return {exact.distance, exact.gradient, payload, kNoFace, kNoFace, true, true};
     }
   }
-  Refined result = Trilinear(field, p);
-  result.face = payload;
+  const bool is_rough =
+      at.is_smooth() && IsRoughEnough(filter, static_cast<double>(field.distance), at.slack);
+  Refined result;
+  if (at.is_smooth() && !is_rough && FromCurved(shape, payload, p, &result)) {
+    return result;
+  }
+  result = Trilinear(field, p);
+  result.face = face;
+  result.is_rough = is_rough;
   return result;
 }
 

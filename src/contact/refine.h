@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/curved.h"
 #include "contact/face_offsets.h"
 #include "contact/shape_data.h"
 
@@ -16,8 +17,11 @@ struct Refined {
   Vec3 gradient{Vec3::UnitZ()};  ///< Unit, out of the material.
   std::uint32_t face{kNoFace};
   std::uint32_t other_face{kNoFace};  ///< When an edge is closest: the other face there.
+  std::uint32_t triangle{kNoFace};    ///< When it is on a freeform face: whose patch has the foot.
   bool is_exact{false};
   bool is_valid{true};  ///< False when everything near is ignored.
+  /** The distance is that of the mesh of freeform faces or of the field, which was good enough. */
+  bool is_rough{false};
   /** The face is continued beyond its edge with an ignored one, in material: it counts only for
    what looks at it. */
   bool is_continued{false};
@@ -29,6 +33,8 @@ struct FaceFilter {
   const std::uint8_t* mask{nullptr};
   std::uint8_t bits{0};
   double limit{std::numeric_limits<double>::infinity()};
+  /** Freeform faces that their mesh puts outside beyond doubt are left at the mesh's distance. */
+  bool allows_rough{false};
 
   [[nodiscard]] bool Drops(std::uint32_t face) const noexcept {
     return mask != nullptr && face != kNoFace && (mask[face] & bits) != 0;
@@ -72,7 +78,16 @@ struct ZoneAt {
     return is_known && (code & ~zone::kPayload) == zone::kList;
   }
 
+  [[nodiscard]] bool is_smooth() const noexcept {
+    return is_known && (code & ~zone::kPayload) == zone::kSmooth;
+  }
+
   [[nodiscard]] std::uint32_t payload() const noexcept { return code & zone::kPayload; }
+
+  /** The face of a zone that is no list. */
+  [[nodiscard]] std::uint32_t FaceIn(const Mesh& mesh) const noexcept {
+    return is_smooth() ? mesh.face[payload()] : payload();
+  }
 };
 
 [[nodiscard]] ZoneAt FindZone(const Shape::Data& shape, const Vec3& p) noexcept;
@@ -206,26 +221,54 @@ void ForEachNearTriangle(const Shape::Data& shape, const ListDistances::Entries&
   }
 }
 
-/** A face's surface, as drawn or as made. */
+/** A face's surface, as drawn or as made; of a freeform face the smooth one near a triangle. */
 class FaceSurface {
  public:
-  FaceSurface(const Shape::Data& shape, const FaceOffsets* offsets, std::uint32_t face)
-      : exact_(shape.exact), offsets_(offsets), face_(face) {}
+  /** @param triangle  Of a freeform face, near where the distance is wanted; else any. */
+  FaceSurface(const Shape::Data& shape, const FaceOffsets* offsets, std::uint32_t face,
+              std::uint32_t triangle = kNoFace)
+      : shape_(shape), offsets_(offsets), face_(face), triangle_(triangle) {}
 
-  [[nodiscard]] spatial::SurfaceDistance CalcDistance(const Vec3& p) const noexcept {
-    return offsets_ == nullptr ? CalcFaceDistance(exact_, face_, p)
+  [[nodiscard]] bool is_freeform() const noexcept {
+    return shape_.exact.faces[face_].kind == spatial::SurfaceKind::kFreeform;
+  }
+
+  /** A freeform face is, where a triangle of it is. */
+  [[nodiscard]] bool is_known() const noexcept { return !is_freeform() || triangle_ != kNoFace; }
+
+  /** Whether the last foot on a freeform face was not beyond its rim. */
+  [[nodiscard]] bool is_on_face() const noexcept { return is_on_face_; }
+
+  /** The distance of a point; of a freeform face, from near where it was asked last. */
+  [[nodiscard]] spatial::SurfaceDistance CalcDistance(const Vec3& p) noexcept {
+    if (is_freeform()) {
+      return CalcCurvedDistance(p);
+    }
+    return offsets_ == nullptr ? CalcFaceDistance(shape_.exact, face_, p)
                                : offsets_->CalcDistance(face_, p);
   }
 
  private:
-  const ExactTable& exact_;
+  [[nodiscard]] spatial::SurfaceDistance CalcCurvedDistance(const Vec3& p) noexcept {
+    CurvedPoint foot;
+    if (triangle_ == kNoFace || (offsets_ != nullptr && offsets_->Moves(face_)) ||
+        !FindFoot(shape_.mesh, triangle_, p, FootOn::kFace, &foot)) {
+      return {};
+    }
+    triangle_ = foot.triangle;
+    is_on_face_ = foot.is_inside;
+    return {(p - foot.q).dot(foot.normal), foot.normal, true};
+  }
+
+  const Shape::Data& shape_;
   const FaceOffsets* offsets_;
   std::uint32_t face_;
+  std::uint32_t triangle_;
+  bool is_on_face_{true};
 };
 
 /** The closest point to p on the curve where two analytic surfaces meet, from a start near it: a
  few steps of Newton's method. False when they do not meet there. RT-safe. */
-[[nodiscard]] bool ProjectOnEdge(const FaceSurface& a, const FaceSurface& b, const Vec3& p,
-                                 Vec3* q) noexcept;
+[[nodiscard]] bool ProjectOnEdge(FaceSurface a, FaceSurface b, const Vec3& p, Vec3* q) noexcept;
 
 }  // namespace hvas::contact

@@ -15,7 +15,7 @@ class NearFaces {
       return;
     }
     if (!at.is_list()) {
-      Add(at.payload(), 0);
+      Add(at.FaceIn(shape.mesh), 0);
     } else if (!Gather(shape, offsets, at.payload(), (p - at.centre).norm())) {
       return;
     }

@@ -123,6 +123,9 @@ struct Scene::Data {
       if (raw[i].is_screened) {
         RefineScreened(held, &raw[i]);
       }
+      if (i < lowest && raw[i].is_rough) {
+        RefineRough(held, &raw[i]);
+      }
       if (i < lowest && raw[i].point != kFixedPoint) {
         MoveToLowest(held, &raw[i]);
       }
@@ -144,6 +147,19 @@ struct Scene::Data {
     if (exact.is_valid) {
       raw->distance = exact.distance + raw->allowance;
       raw->gradient = exact.gradient;
+    }
+  }
+
+  // Gives a contact with freeform faces the distance and gradient of their smooth surface.
+  void RefineRough(const Placed& held, RawContact* raw) const noexcept {
+    const Met met = Meet(held, *raw);
+    const Refined r = RefineAlone(*met.field.shape, met.field.offsets, met.p, {});
+    const std::uint32_t face = raw->is_reverse ? raw->held_face : raw->scene_face;
+    if (r.is_valid && r.is_exact && r.face == face) {
+      raw->distance = r.distance + raw->allowance;
+      raw->gradient = r.gradient;
+      raw->triangle = r.triangle;
+      raw->is_exact = true;
     }
   }
 
@@ -220,7 +236,7 @@ struct Scene::Data {
     std::array<bool, QueryWorkspace::kMaxContacts> is_low{};
     std::array<bool, QueryWorkspace::kMaxContacts> is_passed{};
     for (std::size_t i = 0; i < raw.size(); ++i) {
-      if (raw[i].is_exact && raw[i].body != BodyId{}.value()) {
+      if ((raw[i].is_exact || raw[i].is_rough) && raw[i].body != BodyId{}.value()) {
         is_low[i] = FindTop(held, edges.height, raw[i], &top[i]);
         is_passed[i] = IsPassedBy(held, ahead, edges.height + deepest, raw[i]);
       }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "contact/curved.h"
 #include "contact/field_build.h"
 #include "contact/helix_fit.h"
 #include "contact/shape_data.h"
@@ -46,18 +47,32 @@ Result<void> Check(const ShapeSource& source) {
   return {};
 }
 
-// Queries look at triangles in the zones' lists only.
-void DropUnlistedTriangles(Shape::Data* data) {
+// Queries look at triangles in the zones' lists, and at all of freeform faces.
+void DropUnusedTriangles(Shape::Data* data) {
   ExactTable& exact = data->exact;
-  std::vector<bool> is_listed(data->mesh.triangles.size(), false);
+  std::vector<bool> is_used(data->mesh.triangles.size(), false);
   for (std::size_t i = 0; i < exact.listed.size(); ++i) {
-    is_listed[exact.Listed(i).triangle] = true;
+    is_used[exact.Listed(i).triangle] = true;
+  }
+  for (std::size_t t = 0; t < is_used.size(); ++t) {
+    is_used[t] =
+        is_used[t] || exact.faces[data->mesh.face[t]].kind == spatial::SurfaceKind::kFreeform;
   }
   std::vector<std::uint32_t> number;
-  data->mesh = KeepTriangles(data->mesh, is_listed, &number);
+  data->mesh = KeepTriangles(data->mesh, is_used, &number);
   const std::uint32_t distance = (1U << exact.distance_bits) - 1U;
   for (std::uint32_t& entry : exact.listed) {
     entry = number[entry >> exact.distance_bits] << exact.distance_bits | (entry & distance);
+  }
+  for (std::uint32_t& code : exact.zones) {
+    if ((code & ~zone::kPayload) == zone::kSmooth) {
+      code = zone::kSmooth | number[code & zone::kPayload];
+    }
+  }
+  for (Shell* shell : {&data->shell, &data->features}) {
+    for (std::uint32_t& t : shell->triangle) {
+      t = t != kNoFace ? number[t] : kNoFace;
+    }
   }
 }
 
@@ -68,8 +83,8 @@ std::size_t Bytes(const std::vector<T>& v) {
 
 std::size_t Bytes(const Shell& s) {
   return Bytes(s.nodes) + Bytes(s.x) + Bytes(s.y) + Bytes(s.z) + Bytes(s.leaf_count) +
-         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.order) + Bytes(s.rank) + Bytes(s.thread) +
-         Bytes(s.leaf_thread);
+         Bytes(s.faces) + Bytes(s.facing) + Bytes(s.triangle) + Bytes(s.order) + Bytes(s.rank) +
+         Bytes(s.thread) + Bytes(s.leaf_thread);
 }
 
 // How many blocks a part's box has at its voxel.
@@ -93,6 +108,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
     data->exact.faces.back().origin -= data->p_BC;
   }
   CheckFaces(data->mesh, &data->exact);
+  FindBends(data->box_B.size().norm(), &data->exact, &data->mesh);
   data->helices = FindHelices(data->mesh, data->exact.faces);
   data->voxel = options.voxel > 0 ? options.voxel : ChooseVoxel(data->mesh, data->exact.faces);
   constexpr double kMostBlocks = 1U << 27U;  // Half a gigabyte of directory.
@@ -114,7 +130,7 @@ Result<void> Prepare(const ShapeSource& source, const ShapeOptions& options, Sha
   }
   data->spacing = options.point_spacing > 0 ? options.point_spacing : ChooseSpacing(data->mesh);
   BuildShells(data);
-  DropUnlistedTriangles(data);
+  DropUnusedTriangles(data);
   data->Complete();
   return {};
 }
@@ -165,7 +181,8 @@ ShapeMemory Shape::CalcMemory() const noexcept {
                   Bytes(d.exact.forms) + Bytes(d.helices) + Bytes(d.list_thread);
   memory.mesh = Bytes(m.vertices) + Bytes(m.triangles) + Bytes(m.face) + Bytes(m.normals) +
                 Bytes(m.neighbour) + Bytes(m.edge_kind) + Bytes(m.vertex_kind) +
-                Bytes(m.vertex_normals) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open);
+                Bytes(m.vertex_normals) + Bytes(m.vertex_faces) + Bytes(m.is_vertex_open) +
+                Bytes(m.bends);
   memory.shell = sizeof(Data) + Bytes(d.shell) + Bytes(d.features);
   return memory;
 }

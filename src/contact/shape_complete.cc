@@ -142,14 +142,14 @@ void Shrink(std::vector<T>&... vectors) {
 // What was appended to one by one has room for more.
 void Shrink(Shell* shell) {
   Shrink(shell->nodes, shell->x, shell->y, shell->z, shell->leaf_count, shell->faces, shell->facing,
-         shell->order, shell->rank, shell->thread, shell->leaf_thread);
+         shell->triangle, shell->order, shell->rank, shell->thread, shell->leaf_thread);
   shell->Bind();
 }
 
 void Shrink(Mesh* mesh) {
   Shrink(mesh->vertices, mesh->triangles, mesh->face, mesh->normals, mesh->neighbour,
          mesh->edge_kind, mesh->vertex_kind, mesh->vertex_normals, mesh->vertex_faces,
-         mesh->is_vertex_open);
+         mesh->is_vertex_open, mesh->bends);
 }
 
 }  // namespace

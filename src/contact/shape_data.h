@@ -95,6 +95,8 @@ struct Shell {
   std::vector<std::uint8_t> leaf_count;
   std::vector<SampleFaces> faces;
   std::vector<float> facing;  ///< Each point's least cosine of its normal against a contact's.
+  /** Each point's triangle of its first face, or kNoFace; empty where no face is freeform. */
+  std::vector<std::uint32_t> triangle;
   std::vector<std::uint8_t> order;  ///< Each leaf's lanes, most telling first; Complete fills them.
   std::vector<std::uint8_t> rank;   ///< Each point's place in the order of its leaf; likewise.
   std::size_t point_count{0};
@@ -102,6 +104,11 @@ struct Shell {
   // point lies, or all points of a leaf, and kMaxHelices more beyond its span; 0: on none.
   std::vector<std::uint8_t> thread;
   std::vector<std::uint8_t> leaf_thread;
+
+  /** The triangle of its first face that a point was drawn on, where that is known. */
+  [[nodiscard]] std::uint32_t TriangleOf(std::size_t i) const noexcept {
+    return triangle.empty() ? kNoFace : triangle[i];
+  }
 
   [[nodiscard]] Vec3 point(std::size_t i) const noexcept {
     return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};

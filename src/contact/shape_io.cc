@@ -136,6 +136,7 @@ class Members {
     All(&m->vertex_normals);
     All(&m->vertex_faces);
     All(&m->is_vertex_open);
+    All(&m->bends);
     One(&m->is_closed);
   }
 
@@ -205,6 +206,7 @@ class Members {
     All(&s->leaf_count);
     All(&s->faces);
     All(&s->facing);
+    All(&s->triangle);
     One(&s->point_count);
   }
 

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
 #include "base/random.h"
+#include "contact/curved.h"
 #include "contact/refine.h"
 #include "spatial/box.h"
+#include "spatial/decompose.h"
 
 namespace hvas::contact {
 namespace {
@@ -28,6 +31,7 @@ struct Sample {
   PointFaces faces;
   bool is_edge;
   bool is_feature;
+  std::uint32_t triangle{kNoFace};  // Of the first face, where one of the faces is freeform.
   std::array<Vec3, kMaxPointFaces> normals{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
@@ -139,9 +143,35 @@ void AddCorners(const Shape::Data& data, Sampler* sampler) {
   }
 }
 
-bool IsExact(const Shape::Data& data, std::uint32_t f) {
-  return data.exact.faces[f].kind != spatial::SurfaceKind::kFreeform;
+bool IsFreeform(const Shape::Data& data, std::uint32_t f) {
+  return data.exact.faces[f].kind == spatial::SurfaceKind::kFreeform;
 }
+
+// The faces on both sides of a triangle's edge.
+struct Edge {
+  const Shape::Data& data;
+  std::uint32_t triangle;
+  std::uint32_t other;
+
+  [[nodiscard]] std::uint32_t face() const { return data.mesh.face[triangle]; }
+
+  [[nodiscard]] std::uint32_t other_face() const { return data.mesh.face[other]; }
+
+  // Moves a point of the mesh's edge to where both faces meet. False where they do not near it.
+  bool Project(Vec3* p) const {
+    const double tolerance =
+        4 * (data.exact.deviation[face()] + data.exact.deviation[other_face()]) + 1e-9;
+    Vec3 q = *p;
+    if (face() == other_face() ||
+        !ProjectOnEdge({data, nullptr, face(), triangle}, {data, nullptr, other_face(), other}, *p,
+                       &q) ||
+        (q - *p).norm() > tolerance) {
+      return false;
+    }
+    *p = q;
+    return true;
+  }
+};
 
 // Where a flat face goes over into a fillet there is no edge, but flat contact ends there.
 bool IsFlatBoundary(const Shape::Data& data, std::uint32_t f, std::uint32_t g) {
@@ -166,19 +196,18 @@ void AddEdges(const Shape::Data& data, Sampler* sampler) {
       const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
       const std::uint32_t f = mesh.face[t];
       const std::uint32_t g = mesh.face[n];
-      const bool is_exact = IsExact(data, f) && IsExact(data, g);
-      const double spacing = (is_exact ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
-      const double tolerance = 4 * (data.exact.deviation[f] + data.exact.deviation[g]) + 1e-9;
+      const Edge edge{data, t, n};
+      const bool is_freeform = IsFreeform(data, f) || IsFreeform(data, g);
+      Vec3 middle = 0.5 * (a + b);
+      const bool slides = !is_freeform || edge.Project(&middle);
+      const double spacing = (slides ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
       const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
       // The middle of a short edge too, so that an edge between two near corners gets its point.
       for (int i = 0; i <= 2 * pieces; i += pieces == 1 ? 1 : 2) {
         Vec3 p = a + (0.5 * i / pieces) * (b - a);
-        Vec3 q = p;
-        if (f != g && ProjectOnEdge({data, nullptr, f}, {data, nullptr, g}, p, &q) &&
-            (q - p).norm() <= tolerance) {
-          p = q;
-        }
+        const bool is_on_curve = edge.Project(&p);
         Sample sample{p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true};
+        sample.triangle = is_freeform && is_on_curve ? t : kNoFace;
         sample.normals[0] = NormalAt(data, t, p);
         if (f == g) {
           sample.normals[0] = (mesh.NormalOf(t) + mesh.NormalOf(n)).normalized();
@@ -199,13 +228,38 @@ struct FacePlan {
   bool is_feature{true};
 };
 
-FacePlan PlanOf(const spatial::Surface& face) {
-  // Contacts slide on analytic faces, so that planes have one sample every 3 spacings along each
-  // way, round faces one every 2 across (docs/algorithms/contact.md, "Samples").
+// The direction in which a face was drawn out of a curve; none where it was not.
+std::optional<Vec3> FindExtrusion(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  constexpr double kLeastTurn = 1e-4;  // Mean square of a normal's share: 0.6 degrees. A choice.
+  Mat3 sum = Mat3::Zero();
+  double area = 0;
+  for (const std::uint32_t t : triangles) {
+    const Vec3 n = mesh.NormalOf(t);
+    sum += mesh.CalcArea(t) * n * n.transpose();
+    area += mesh.CalcArea(t);
+  }
+  const spatial::Eigensystem normals = spatial::CalcEigensystem(sum);
+  const bool is_extruded = normals.values[0] < kLeastTurn * kLeastTurn * area;
+  return is_extruded ? std::optional<Vec3>(normals.vectors.col(0)) : std::nullopt;
+}
+
+FacePlan PlanOf(const Shape::Data& data, std::uint32_t f,
+                const std::vector<std::uint32_t>& triangles) {
+  // Contacts slide, so that planes have one sample every 3 spacings along each way, round faces one
+  // every 2 across, and freeform ones that were extruded one every 3 along
+  // (docs/algorithms/contact.md, "Samples").
   constexpr double kSparse = 1.0 / 3;
   constexpr double kCurved = 1.0 / 2;
+  const spatial::Surface& face = data.exact.faces[f];
   FacePlan plan;
-  if (face.kind == spatial::SurfaceKind::kFreeform || face.kind == spatial::SurfaceKind::kTorus) {
+  if (face.kind == spatial::SurfaceKind::kTorus) {
+    return plan;
+  }
+  if (face.kind == spatial::SurfaceKind::kFreeform) {
+    if (const std::optional<Vec3> along = FindExtrusion(data.mesh, triangles)) {
+      plan.stretch -= (1 - kSparse) * *along * along->transpose();
+      plan.area_scale = kSparse;
+    }
     return plan;
   }
   if (face.kind == spatial::SurfaceKind::kPlane || face.outward < 0) {
@@ -236,7 +290,8 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
   if (!(area > 0)) {
     return;
   }
-  const FacePlan plan = PlanOf(data.exact.faces[f]);
+  const FacePlan plan = PlanOf(data, f, triangles);
+  const bool is_freeform = IsFreeform(data, f);
   Sampler stretched(spacing);
   const int tries =
       8 + static_cast<int>(kTriesPerSample * plan.area_scale * area / (spacing * spacing));
@@ -249,12 +304,20 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
     const double share = random->Uniform();
     Vec3 p = (1 - root) * mesh.vertices[v[0]] + root * (1 - share) * mesh.vertices[v[1]] +
              root * share * mesh.vertices[v[2]];
+    Vec3 n = mesh.NormalOf(t);
+    if (is_freeform) {
+      const CurvedPoint point = PointOfPatch(mesh, t, root * (1 - share), root * share);
+      p = point.q;
+      n = point.normal.allFinite() ? point.normal : n;
+    }
     const auto exact = spatial::CalcDistance(data.exact.faces[f], p);
     if (exact.is_valid) {
       p -= exact.distance * exact.gradient;
+      n = exact.gradient;
     }
     Sample sample{plan.stretch * p, FacesOf({f}), false, plan.is_feature};
-    sample.normals[0] = exact.is_valid ? exact.gradient : mesh.NormalOf(t);
+    sample.triangle = is_freeform ? t : kNoFace;
+    sample.normals[0] = n;
     if (stretched.TryAdd(sample, kDensity * spacing)) {
       out->push_back(sample);
       out->back().p = p;
@@ -312,7 +375,12 @@ double FacingLimit(const Shape::Data& data, const Sample& sample) {
 class TreeBuilder {
  public:
   TreeBuilder(const Shape::Data& data, const std::vector<Sample>& samples, Shell* shell)
-      : data_(data), samples_(samples), shell_(shell) {}
+      : data_(data),
+        samples_(samples),
+        shell_(shell),
+        has_freeform_(std::any_of(samples.begin(), samples.end(), [](const Sample& sample) {
+          return sample.triangle != kNoFace;
+        })) {}
 
   void Build(std::vector<std::uint32_t> order) {
     order_ = std::move(order);
@@ -414,6 +482,9 @@ class TreeBuilder {
       }
       shell_->faces.push_back(faces);
       shell_->facing.push_back(static_cast<float>(FacingLimit(data_, s)));
+      if (has_freeform_) {
+        shell_->triangle.push_back(s.triangle);
+      }
     }
     shell_->leaf_count.push_back(static_cast<std::uint8_t>(range.count()));
     return static_cast<std::int32_t>(shell_->leaf_count.size()) - 1;
@@ -422,6 +493,7 @@ class TreeBuilder {
   const Shape::Data& data_;
   const std::vector<Sample>& samples_;
   Shell* shell_;
+  bool has_freeform_;
   std::vector<std::uint32_t> order_;
 };
 

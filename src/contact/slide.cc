@@ -10,6 +10,10 @@ namespace {
 constexpr int kMaxSteps = 3;          // Slides over faces and edges to the lowest point: a choice.
 constexpr double kWorthwhile = 2e-8;  // [m]; a slide that can gain less is left out.
 
+// [m] by which the distances from a face's surface and from the shape differ, at most, where the
+// face is the closest of the shape: rounding.
+constexpr double kSame = 1e-9;
+
 constexpr double kFaceReach = 3.0;   // In spacings.
 constexpr double kEdgeReach = 1.5;   // Spacings, on edges: a choice.
 constexpr double kMostSparse = 8.0;  // A slide may not lead anywhere.
@@ -18,80 +22,104 @@ double SparsityOf(const RawContact& contact) {
   return std::min(static_cast<double>(contact.sparsity), kMostSparse);
 }
 
+// A place of a sample, in its shape's frame.
+struct State {
+  Vec3 p{Vec3::Zero()};
+  double distance{0};
+  Vec3 gradient{Vec3::Zero()};    // Of the distance.
+  std::array<Vec3, 2> normals{};  // Of the faces that it lies on.
+  bool is_on_face{true};          // Not beyond the rim of a freeform face.
+};
+
+std::uint32_t OtherTriangle(const Shape::Data& shape, std::uint32_t triangle, std::uint32_t face) {
+  return triangle != kNoFace && face != kNoFace ? shape.mesh.NeighbourOn(triangle, face) : kNoFace;
+}
+
 // The face, or the two faces at an edge, on which a sample may move.
 class Track {
  public:
-  Track(const Placed& sampled, const SampleFaces& sample, double sparsity)
-      : shape_(*sampled.shape), offsets_(sampled.offsets), faces_(sample.faces) {
-    const auto& faces = sample.faces;
-    reach_ = shape_.spacing *
-             (faces[1] == kNoFace ? kFaceReach * std::sqrt(sparsity) : kEdgeReach * sparsity);
-    is_usable_ =
-        faces[2] == kNoFace && IsExact(faces[0]) && (faces[1] == kNoFace || IsExact(faces[1]));
+  Track(const Placed& sampled, const Shell& shell, std::uint32_t point, double sparsity)
+      : shape_(*sampled.shape),
+        offsets_(sampled.offsets),
+        is_edge_(shell.faces[point].faces[1] != kNoFace),
+        first_(shape_, offsets_, shell.faces[point].faces[0], shell.TriangleOf(point)),
+        second_(shape_, offsets_, shell.faces[point].faces[1],
+                OtherTriangle(shape_, shell.TriangleOf(point), shell.faces[point].faces[1])) {
+    reach_ = shape_.spacing * (is_edge_ ? kEdgeReach * sparsity : kFaceReach * std::sqrt(sparsity));
+    is_usable_ = shell.faces[point].faces[2] == kNoFace && first_.is_known() &&
+                 (!is_edge_ || second_.is_known());
   }
 
   [[nodiscard]] bool is_usable() const { return is_usable_; }
 
   [[nodiscard]] double reach() const { return reach_; }
 
-  // The part of a direction that lies along the track at p.
-  [[nodiscard]] Vec3 Along(const Vec3& p, const Vec3& direction) const {
-    const Vec3 n = Surface(0).CalcDistance(p).gradient;
-    if (faces_[1] == kNoFace) {
-      return direction - direction.dot(n) * n;
+  // The part of the distance's gradient that lies along the track.
+  [[nodiscard]] Vec3 GradientAlong(const State& at) const {
+    if (!is_edge_) {
+      return at.gradient - at.gradient.dot(at.normals[0]) * at.normals[0];
     }
-    const Vec3 tangent = n.cross(Surface(1).CalcDistance(p).gradient);
+    const Vec3 tangent = at.normals[0].cross(at.normals[1]);
     const double squared = tangent.squaredNorm();
-    return squared > 0 ? Vec3(direction.dot(tangent) / squared * tangent) : Vec3::Zero();
+    return squared > 0 ? Vec3(at.gradient.dot(tangent) / squared * tangent) : Vec3::Zero();
   }
 
-  [[nodiscard]] bool Project(Vec3* p) const {
-    if (faces_[1] != kNoFace) {
-      const Vec3 wanted = *p;
-      return ProjectOnEdge(Surface(0), Surface(1), wanted, p);
+  // Finds the normals of the faces at a place on them.
+  void FindNormals(State* at) {
+    at->normals[0] = first_.CalcDistance(at->p).gradient;
+    if (is_edge_) {
+      at->normals[1] = second_.CalcDistance(at->p).gradient;
     }
-    const auto exact = Surface(0).CalcDistance(*p);
-    *p -= exact.distance * exact.gradient;
+  }
+
+  [[nodiscard]] bool Project(State* at) {
+    if (is_edge_) {
+      const Vec3 wanted = at->p;
+      if (!ProjectOnEdge(first_, second_, wanted, &at->p)) {
+        return false;
+      }
+      FindNormals(at);
+      return true;
+    }
+    const auto exact = first_.CalcDistance(at->p);
+    at->p -= exact.distance * exact.gradient;
+    at->normals[0] = exact.gradient;
+    at->is_on_face = first_.is_on_face();
     return exact.is_valid;
   }
 
-  // True where the trimmed part of the track goes as far as p.
-  [[nodiscard]] bool Reaches(const Vec3& p) const {
+  // True where the trimmed part of the track goes as far as a place.
+  [[nodiscard]] bool Reaches(const State& at) const {
+    if (!is_edge_ && first_.is_freeform()) {
+      return at.is_on_face;
+    }
     FaceFilter near;
     near.limit = 10 * kOnSurface;
-    const Refined r = RefineAlone(shape_, offsets_, p, near);
+    const Refined r = RefineAlone(shape_, offsets_, at.p, near);
     return r.is_exact && std::abs(r.distance) < kOnSurface;
   }
 
  private:
-  [[nodiscard]] FaceSurface Surface(std::size_t i) const { return {shape_, offsets_, faces_[i]}; }
-
-  [[nodiscard]] bool IsExact(std::uint32_t f) const {
-    return shape_.exact.faces[f].kind != spatial::SurfaceKind::kFreeform;
-  }
-
   const Shape::Data& shape_;
   const FaceOffsets* offsets_;
-  const std::array<std::uint32_t, kMaxPointFaces>& faces_;
+  bool is_edge_;
+  FaceSurface first_;
+  FaceSurface second_;
   double reach_{0};
   bool is_usable_{false};
 };
 
-struct State {
-  Vec3 p;
-  double distance;
-  Vec3 gradient;  // In the sampled shape's frame.
-};
-
 // Steepest descent along the track with a secant step: the slope at two points gives the bottom of
-// the parabola through them, which is exact for shapes that curve evenly.
-template <typename Evaluate>
-State Descend(const Track& track, const State& start, Evaluate evaluate) {
+// the parabola through them, which is exact for shapes that curve evenly. `accept` is asked about
+// each state that would be gone to; `is_barred` tells that it let none of a step's through.
+template <typename Evaluate, typename Accept>
+State Descend(const State& start, Track* track, Evaluate evaluate, Accept accept, bool* is_barred) {
+  *is_barred = false;
   State best = start;
   for (int step = 0; step < kMaxSteps; ++step) {
-    const Vec3 downhill = -track.Along(best.p, best.gradient);
+    const Vec3 downhill = -track->GradientAlong(best);
     const double slope = downhill.norm();
-    const double left = track.reach() - (best.p - start.p).norm();
+    const double left = track->reach() - (best.p - start.p).norm();
     if (slope * left < kWorthwhile) {
       break;
     }
@@ -99,13 +127,13 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
     const State from = best;
     const auto look = [&](double length, State* out) {
       out->p = from.p + length * direction;
-      return track.Project(&out->p) && evaluate(out);
+      return track->Project(out) && evaluate(out);
     };
     State probe;
     const double first = 0.25 * left;
     double length = first;
     if (look(first, &probe)) {
-      const double change = track.Along(probe.p, probe.gradient).dot(direction) + slope;
+      const double change = track->GradientAlong(probe).dot(direction) + slope;
       length = change > 0 ? std::min(first * slope / change, left) : left;
     } else {
       probe.distance = std::numeric_limits<double>::infinity();
@@ -119,7 +147,11 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
     const State* const lower = bottom.distance < probe.distance ? &bottom : &probe;
     const State* const other = lower == &bottom ? &probe : &bottom;
     for (const State* s : {lower, other}) {
-      if (s->distance < best.distance && track.Reaches(s->p)) {
+      if (!(s->distance < best.distance) || !track->Reaches(*s)) {
+        continue;
+      }
+      *is_barred = !accept(*s);
+      if (!*is_barred) {
         best = *s;
         break;
       }
@@ -135,20 +167,51 @@ State Descend(const Track& track, const State& start, Evaluate evaluate) {
 
 void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
            RawContact* contact) noexcept {
-  const Track track(sampled, shell.faces[contact->point], SparsityOf(*contact));
+  Track track(sampled, shell, contact->point, SparsityOf(*contact));
   if (!track.is_usable() || !contact->is_exact) {
     return;
   }
   const RelativePose X_FS(field, sampled);
   const std::uint32_t face = contact->is_reverse ? contact->held_face : contact->scene_face;
-  const auto evaluate = [&](State* s) {
-    const Refined r = RefineAlone(*field.shape, field.offsets, X_FS * s->p, {});
+  const auto evaluate_to = [&](double limit, State* s) {
+    FaceFilter near;
+    near.limit = limit;
+    const Refined r = RefineAlone(*field.shape, field.offsets, X_FS * s->p, near);
     s->distance = r.distance + contact->allowance;
     s->gradient = X_FS.R.transpose() * r.gradient;
     return r.is_exact && r.face == face;
   };
-  const State end = Descend(
-      track, {contact->p, contact->distance, X_FS.R.transpose() * contact->gradient}, evaluate);
+  const auto evaluate = [&](State* s) {
+    return evaluate_to(std::numeric_limits<double>::infinity(), s);
+  };
+  State start;
+  start.p = contact->p;
+  start.distance = contact->distance;
+  start.gradient = X_FS.R.transpose() * contact->gradient;
+  track.FindNormals(&start);
+  // The face's surface alone is asked on the way, and the whole shape where it leads.
+  FaceSurface surface(*field.shape, field.offsets, face, contact->triangle);
+  const auto evaluate_surface = [&](State* s) {
+    const spatial::SurfaceDistance found = surface.CalcDistance(X_FS * s->p);
+    s->distance = found.distance + contact->allowance;
+    s->gradient = X_FS.R.transpose() * found.gradient;
+    return found.is_valid;
+  };
+  const auto is_of_shape = [&](const State& s) {
+    State same = s;
+    return evaluate_to(std::abs(s.distance - contact->allowance) + kSame, &same) &&
+           std::abs(same.distance - s.distance) < kSame;
+  };
+  State met = start;
+  State end = start;
+  bool is_barred = true;
+  if (evaluate_surface(&met) && std::abs(met.distance - start.distance) < kSame) {
+    end = Descend(start, &track, evaluate_surface, is_of_shape, &is_barred);
+  }
+  if (is_barred) {
+    end = Descend(
+        end, &track, evaluate, [](const State&) { return true; }, &is_barred);
+  }
   contact->p = end.p;
   contact->distance = end.distance;
   contact->gradient = X_FS.R * end.gradient;
@@ -156,7 +219,7 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
 
 void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surface& plane,
                   RawContact* contact) noexcept {
-  const Track track(sampled, shell.faces[contact->point], SparsityOf(*contact));
+  Track track(sampled, shell, contact->point, SparsityOf(*contact));
   if (!track.is_usable()) {
     return;
   }
@@ -165,7 +228,14 @@ void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surf
     s->gradient = plane.axis;
     return true;
   };
-  const State end = Descend(track, {contact->p, contact->distance, plane.axis}, evaluate);
+  State start;
+  start.p = contact->p;
+  start.distance = contact->distance;
+  start.gradient = plane.axis;
+  track.FindNormals(&start);
+  bool is_barred = false;
+  const State end = Descend(
+      start, &track, evaluate, [](const State&) { return true; }, &is_barred);
   contact->p = end.p;
   contact->distance = end.distance;
 }

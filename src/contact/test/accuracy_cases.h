@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "contact/test/parts.h"
@@ -14,7 +16,7 @@ namespace hvas::contact::testing {
 inline constexpr double kMillisecondStep = 50e-6;  ///< [m] at 50 mm/s.
 
 struct AccuracyCase {
-  const char* name;
+  std::string name;
   std::function<ShapeSource(double deviation)> held, other;
   double depth;                               ///< Everywhere along the way [m].
   int steps;                                  ///< Steps of a millisecond.
@@ -137,6 +139,26 @@ inline AccuracyCase CaseTorus() {
             return spatial::Pose(spatial::RotationFromVector(turn), Vec3(0, 0, -120e-6));
           },
           0.05e-3};
+}
+
+/** The same with no surface known under round faces: their corners tell all. */
+inline AccuracyCase AsFreeform(AccuracyCase test) {
+  test.name += "_freeform";
+  for (auto* make : {&test.held, &test.other}) {
+    *make = [known = std::move(*make)](double deviation) {
+      ShapeSource source = known(deviation);
+      for (spatial::Surface& face : source.faces) {
+        face = face.kind == spatial::SurfaceKind::kPlane ? face : spatial::Surface();
+      }
+      return source;
+    };
+  }
+  return test;
+}
+
+inline std::vector<AccuracyCase> FreeformAccuracyCases() {
+  return {AsFreeform(CaseC()),    AsFreeform(CaseA()),      AsFreeform(CaseD()),
+          AsFreeform(CaseCone()), AsFreeform(CaseSphere()), AsFreeform(CaseTorus())};
 }
 
 inline std::vector<AccuracyCase> AllAccuracyCases() {

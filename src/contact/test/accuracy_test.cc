@@ -69,8 +69,8 @@ TEST_P(AccuracyTest, DepthIsExactAndThePooledForceSmooth) {
     last = force;
   }
   if (std::getenv("HVAS_TOL_SCALE") != nullptr) {
-    std::printf("  %s: depth error %.1f nm, force change %.4f mN\n", test.name, 1e9 * depth_error,
-                1e3 * force_change);
+    std::printf("  %s: depth error %.1f nm, force change %.4f mN\n", test.name.c_str(),
+                1e9 * depth_error, 1e3 * force_change);
   }
   EXPECT_LE(depth_error, kHalfMicrometre);
   EXPECT_GT(last.norm(), 0.3 * kStiffness * test.depth);  // Two thirds on a line, all on a plane.
@@ -80,7 +80,10 @@ TEST_P(AccuracyTest, DepthIsExactAndThePooledForceSmooth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, AccuracyTest, ::testing::ValuesIn(testing::AllAccuracyCases()),
-                         [](const auto& item) { return std::string(item.param.name); });
+                         [](const auto& item) { return item.param.name; });
+INSTANTIATE_TEST_SUITE_P(Freeform, AccuracyTest,
+                         ::testing::ValuesIn(testing::FreeformAccuracyCases()),
+                         [](const auto& item) { return item.param.name; });
 
 // H7/g6 on 6 mm at its tightest: hole 6.000, dowel 5.996, hence 2 um of clearance at the radius.
 TEST(ClearanceOnset, OfAFittedDowelIsRightToHalfAMicrometre) {

@@ -246,9 +246,15 @@ TEST_F(NutOnBolt, MatesThatAnswerTakeTheThreadsOutOfContact) {
   const IgnoredPair ignored{BodyId{0}, thread, thread};
   QueryOptions options;
   options.ignored = {&ignored, 1};
-  const spatial::Pose X_WN(Quat::Identity(), Vec3(0, 0, 4 * size_.pitch + 60e-6));
-  EXPECT_FALSE(scene_.IsFree(*nut_, X_WN, 1e-6, {}, &workspace_));
-  EXPECT_TRUE(scene_.IsFree(*nut_, X_WN, 1e-6, options, &workspace_));
+  // Off to the side, as threads within a mate are: the ends of the nut are met by no thread.
+  for (int i = 0; i < 40; ++i) {
+    const double turn = 0.157 * i;
+    const spatial::Pose X_WN(Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ())),
+                             Vec3(85e-6 * std::cos(3 * turn), 85e-6 * std::sin(3 * turn),
+                                  (4 + turn / (2 * std::numbers::pi)) * size_.pitch));
+    EXPECT_FALSE(scene_.IsFree(*nut_, X_WN, 1e-6, {}, &workspace_)) << turn;
+    EXPECT_TRUE(scene_.IsFree(*nut_, X_WN, 1e-6, options, &workspace_)) << turn;
+  }
 }
 
 TEST_F(NutOnBolt, ThreadsAreKeptWithTheShape) {

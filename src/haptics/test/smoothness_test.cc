@@ -94,7 +94,7 @@ double CalcLargestChange(const AccuracyCase& test, const Vec3& lift, const Vec3&
     last = force;
   }
   if (std::getenv("HVAS_TOL_SCALE") != nullptr) {
-    std::printf("  %s: %.4f N, largest change %.4f mN per ms\n", test.name, last.norm(),
+    std::printf("  %s: %.4f N, largest change %.4f mN per ms\n", test.name.c_str(), last.norm(),
                 1e3 * largest);
   }
   return largest;
@@ -119,6 +119,16 @@ TEST(Smoothness, OfAShaftSlidingOverAGroove) {
 TEST(Smoothness, OfAPlateSlidingOnAnother) {
   const AccuracyCase test = contact::testing::CaseP();
   EXPECT_LE(CalcLargestChange(test, Vec3::Zero(), Vec3(0, 0, 0.2e-3)), test.force_limit);
+}
+
+// The same limits where no surface is known under shaft, groove and bore.
+TEST(Smoothness, OfFreeformFacesIsThatOfAnalyticOnes) {
+  const Vec3 free(110e-6, 0, 0);
+  const AccuracyCase turning = contact::testing::AsFreeform(contact::testing::CaseC());
+  EXPECT_LE(CalcLargestChange(turning, Vec3(turning.depth / 3, 0, 0), free), turning.force_limit);
+  EXPECT_LE(CalcLargestChange(turning, Vec3::Zero(), free), 0.25e-3 + 0.06e-3);
+  const AccuracyCase sliding = contact::testing::AsFreeform(contact::testing::CaseA());
+  EXPECT_LE(CalcLargestChange(sliding, Vec3::Zero(), free), sliding.force_limit);
 }
 
 }  // namespace
