@@ -52,6 +52,10 @@ class Track {
 
   [[nodiscard]] bool is_usable() const { return is_usable_; }
 
+  [[nodiscard]] bool is_freeform() const {
+    return first_.is_freeform() || (is_edge_ && second_.is_freeform());
+  }
+
   [[nodiscard]] double reach() const { return reach_; }
 
   // The part of the distance's gradient that lies along the track.
@@ -189,7 +193,8 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
   start.distance = contact->distance;
   start.gradient = X_FS.R.transpose() * contact->gradient;
   track.FindNormals(&start);
-  // The face's surface alone is asked on the way, and the whole shape where it leads.
+  // With freeform faces the face's surface alone is asked on the way, and the whole shape where it
+  // leads: a foot on a mesh takes long.
   FaceSurface surface(*field.shape, field.offsets, face, contact->triangle);
   const auto evaluate_surface = [&](State* s) {
     const spatial::SurfaceDistance found = surface.CalcDistance(X_FS * s->p);
@@ -205,12 +210,13 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
   State met = start;
   State end = start;
   bool is_barred = true;
-  if (evaluate_surface(&met) && std::abs(met.distance - start.distance) < kSame) {
+  const bool is_freeform = surface.is_freeform() || track.is_freeform();
+  if (is_freeform && evaluate_surface(&met) && std::abs(met.distance - start.distance) < kSame) {
     end = Descend(start, &track, evaluate_surface, is_of_shape, &is_barred);
   }
   if (is_barred) {
     end = Descend(
-        end, &track, evaluate, [](const State&) { return true; }, &is_barred);
+        start, &track, evaluate, [](const State&) { return true; }, &is_barred);
   }
   contact->p = end.p;
   contact->distance = end.distance;
