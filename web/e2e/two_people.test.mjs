@@ -55,8 +55,8 @@ it("two people put the cover on together, handing it over, and eight look on", w
   await first.getByTestId("rec").click();
   await waitForState(first, ({ recording }) => recording !== null);
 
-  // One of them is a page; eight that draw by software would take the two cores from each other.
-  const { page: onlooker } = await openPage(browser, studio.viewer);
+  // One of them is a page, and a small one; eight that draw by software would take the two cores from each other.
+  const { page: onlooker } = await openPage(browser, studio.viewer, { viewport: { width: 480, height: 300 } });
   await waitForPicture(onlooker);
   const session = await signIn(studio.viewer);
   const others = await Promise.all(Array.from({ length: 7 }, () => connect(session)));

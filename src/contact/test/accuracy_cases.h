@@ -141,6 +141,58 @@ inline AccuracyCase CaseTorus() {
           0.05e-3};
 }
 
+inline constexpr double kBaseRadius = 10e-3;  ///< Of the involute [m].
+inline constexpr double kRollFrom = 0.2;      ///< Where the flank begins [rad].
+inline constexpr double kRollTo = 0.8;        ///< Where it ends [rad].
+inline constexpr double kRackHalf = 5e-3;     ///< Half the height of the rack [m].
+
+/** A tooth's flank about x, an involute that is one freeform face, on a wall of 1.5 mm. Faces: 0
+ the flank, then planes. */
+inline ShapeSource InvoluteFlank(double deviation) {
+  constexpr double kWall = 1.5e-3;
+  const int n = static_cast<int>(
+      std::ceil((kRollTo - kRollFrom) * std::sqrt(kBaseRadius * kRollTo / (8 * deviation))));
+  const auto normal_at = [](double t) { return Eigen::Vector2d(std::sin(t), -std::cos(t)); };
+  const auto point_at = [&](double t) {
+    const Eigen::Vector2d on_base(std::cos(t), std::sin(t));
+    return Eigen::Vector2d(kBaseRadius * (on_base + t * normal_at(t)));
+  };
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i <= n; ++i) {
+    outline.push_back(point_at(kRollFrom + (kRollTo - kRollFrom) * i / n));
+  }
+  outline.emplace_back(outline.back() - kWall * normal_at(kRollTo));
+  outline.emplace_back(outline.front() - kWall * normal_at(kRollFrom));
+  ShapeSource source = Prism(outline, 6e-3);
+  const auto flank = static_cast<std::uint32_t>(n);  // That many planes are one face.
+  for (std::uint32_t& face : source.triangle_face) {
+    face = face < flank ? 0 : face - flank + 1;
+  }
+  source.faces.erase(source.faces.begin() + 1, source.faces.begin() + n);
+  source.faces[0] = {};
+  return source;
+}
+
+/** The flank rolls on a flat rack, which goes the way of the base circle: at a roll t it reaches
+ r_b t from the axis, so that its depth stays. The contact's radius of curvature r_b t trebles. */
+inline AccuracyCase CaseInvolute() {
+  constexpr double kDepth = 100e-6;
+  constexpr int kSteps = 400;
+  return {"involute",
+          [](double d) { return InvoluteFlank(std::max(d, kCoarse)); },
+          [](double) {
+            return Block({20e-3, 20e-3, kRackHalf});
+          },
+          kDepth,
+          kSteps,
+          [](double i) {
+            const double t = kRollFrom + (kRollTo - kRollFrom) * (0.1 + 0.8 * i / kSteps);
+            return spatial::Pose(spatial::RotationFromVector({-t, 0, 0}),
+                                 Vec3(0, 0, kRackHalf + kBaseRadius * t - kDepth));
+          },
+          0};
+}
+
 /** The same with no surface known under round faces: their corners tell all. */
 inline AccuracyCase AsFreeform(AccuracyCase test) {
   test.name += "_freeform";
@@ -158,7 +210,8 @@ inline AccuracyCase AsFreeform(AccuracyCase test) {
 
 inline std::vector<AccuracyCase> FreeformAccuracyCases() {
   return {AsFreeform(CaseC()),    AsFreeform(CaseA()),      AsFreeform(CaseD()),
-          AsFreeform(CaseCone()), AsFreeform(CaseSphere()), AsFreeform(CaseTorus())};
+          AsFreeform(CaseCone()), AsFreeform(CaseSphere()), AsFreeform(CaseTorus()),
+          CaseInvolute()};
 }
 
 inline std::vector<AccuracyCase> AllAccuracyCases() {
