@@ -660,7 +660,9 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
     const Refined r = RefineActual(*field.shape, field.offsets, sample.p_F, hit, filter);
     if (remembers && (hit.list != kNoList || IsOfList(hit))) {
       const double least = r.is_valid ? r.distance : filter.limit;
-      const double unsure = 2 * field.shape->exact.most_deviation + kListsAgree;
+      const ExactTable& exact = field.shape->exact;
+      const double unsure = 2 * exact.most_deviation + kListsAgree +
+                            (r.is_valid && r.is_rough ? exact.deviation[r.face] : 0);
       work_->memory->SetFar(bounds, hit.point, least - unsure);
     }
     // So deep inside, the field knows no face: for a sample of faces that something else answers

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // To be raised whenever shapes are built or written differently.
-constexpr std::uint32_t kVersion = 28;
+constexpr std::uint32_t kVersion = 29;
 constexpr std::array<char, 8> kMagic{'H', 'V', 'A', 'S', 'S', 'H', 'A', 'P'};
 constexpr const char* kExtension = ".hvasshape";
 constexpr std::size_t kKeyLength = 32;  // Hex digits of 128 bits.

@@ -203,8 +203,10 @@ void Shape::Data::Complete() {
     GroupLists(mesh, &exact);
   }
   exact.most_deviation = 0;
-  for (const double deviation : exact.deviation) {
-    exact.most_deviation = std::max(exact.most_deviation, deviation);
+  for (std::size_t f = 0; f < exact.faces.size(); ++f) {
+    if (exact.faces[f].kind != spatial::SurfaceKind::kFreeform) {
+      exact.most_deviation = std::max(exact.most_deviation, exact.deviation[f]);
+    }
   }
   exact.forms.clear();
   for (const spatial::Surface& surface : exact.faces) {

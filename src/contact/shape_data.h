@@ -49,7 +49,7 @@ struct ExactTable {
   double distance_unit{0};
   std::vector<ListFaces> list_faces;  ///< Each list's faces; Complete fills them and the next.
   std::vector<FaceForm> forms;        ///< Each face's form.
-  double most_deviation{0};           ///< The largest of `deviation` [m]; Complete finds it.
+  double most_deviation{0};           ///< The largest of analytic faces [m]; Complete finds it.
 
   [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
     const std::uint32_t entry = listed[i];

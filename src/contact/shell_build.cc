@@ -230,7 +230,8 @@ struct FacePlan {
 
 // The direction in which a face was drawn out of a curve; none where it was not.
 std::optional<Vec3> FindExtrusion(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
-  constexpr double kLeastTurn = 1e-4;  // Mean square of a normal's share: 0.6 degrees. A choice.
+  // [rad] by which normals may turn along it, as a mean: those of triangles do. A choice.
+  constexpr double kMostTurn = 0.02;
   Mat3 sum = Mat3::Zero();
   double area = 0;
   for (const std::uint32_t t : triangles) {
@@ -239,7 +240,7 @@ std::optional<Vec3> FindExtrusion(const Mesh& mesh, const std::vector<std::uint3
     area += mesh.CalcArea(t);
   }
   const spatial::Eigensystem normals = spatial::CalcEigensystem(sum);
-  const bool is_extruded = normals.values[0] < kLeastTurn * kLeastTurn * area;
+  const bool is_extruded = normals.values[0] < kMostTurn * kMostTurn * area;
   return is_extruded ? std::optional<Vec3>(normals.vectors.col(0)) : std::nullopt;
 }
 
