@@ -223,7 +223,7 @@ class NormalFinder {
     if (!(length > 0)) {
       return Vec3::Zero();
     }
-    const Vec3 n = corner_normal_ / length;
+    Vec3 n = corner_normal_ / length;
     AddRings();
     points_.clear();
     for (const std::uint32_t t : near_) {

@@ -31,7 +31,7 @@ void FindBends(double diagonal, ExactTable* exact, Mesh* mesh);
 struct CurvedPoint {
   Vec3 q{Vec3::Zero()};
   Vec3 normal{Vec3::Zero()};        ///< Unit, out of the material.
-  std::uint32_t triangle{kNoFace};  ///< On whose patch it is.
+  std::uint32_t triangle{kNoFace};  ///< The triangle on whose patch it is.
   bool is_inside{false};            ///< False beyond the rim of its face.
 };
 

@@ -158,11 +158,11 @@ struct Mesh {
            edge_kind[triangle][k] != EdgeKind::kSmooth;
   }
 
-  /** Of the triangles across a triangle's edges, one of a face; kNoFace where none is. */
+  /** Finds a triangle of a face across one of a triangle's edges; kNoFace where none is. */
   [[nodiscard]] std::uint32_t NeighbourOn(std::uint32_t triangle,
                                           std::uint32_t on_face) const noexcept;
 
-  /** Of the triangles around corner k of a triangle, one of a face; kNoFace where none is found. */
+  /** Finds a triangle of a face around corner k of a triangle; kNoFace where none is found. */
   [[nodiscard]] std::uint32_t AroundOn(std::uint32_t triangle, std::size_t k,
                                        std::uint32_t on_face) const noexcept;
 

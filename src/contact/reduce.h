@@ -21,7 +21,8 @@ struct RawContact {
   std::uint32_t point{0};  ///< Index in the shell that it came from, or kFixedPoint.
   std::uint32_t held_face{0};
   std::uint32_t scene_face{0};
-  std::uint32_t triangle{kFixedPoint};  ///< Of a freeform face of the field, near it; else none.
+  std::uint32_t triangle{
+      kFixedPoint};        ///< A triangle of the field's freeform face near it, or none.
   bool is_reverse{false};  ///< The sample is the scene body's, the field the held shape's.
   bool is_exact{false};
   bool is_screened{false};  ///< Distance and gradient are in single precision, to kScreened.

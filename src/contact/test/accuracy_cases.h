@@ -141,7 +141,7 @@ inline AccuracyCase CaseTorus() {
           0.05e-3};
 }
 
-inline constexpr double kBaseRadius = 10e-3;  ///< Of the involute [m].
+inline constexpr double kBaseRadius = 10e-3;  ///< Base radius of the involute [m].
 inline constexpr double kRollFrom = 0.2;      ///< Where the flank begins [rad].
 inline constexpr double kRollTo = 0.8;        ///< Where it ends [rad].
 inline constexpr double kRackHalf = 5e-3;     ///< Half the height of the rack [m].
@@ -193,7 +193,7 @@ inline AccuracyCase CaseInvolute() {
           0};
 }
 
-/** The same with no surface known under round faces: their corners tell all. */
+/** A case with no surface known under round faces: the corners of their meshes tell all. */
 inline AccuracyCase AsFreeform(AccuracyCase test) {
   test.name += "_freeform";
   for (auto* make : {&test.held, &test.other}) {

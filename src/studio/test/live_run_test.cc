@@ -136,7 +136,7 @@ TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
 }
 
 TEST(LiveHandTest, RendersWithTheGuidanceAskedForOutsideTrials) {
-  const auto model = simulation::testing::PegInBlockModel();
+  const auto& model = simulation::testing::PegInBlockModel();
   HandPurpose purpose;
   purpose.guidance.threads_turn = true;
   purpose.guidance.contact_in_holes = true;
