@@ -15,10 +15,11 @@ namespace {
 constexpr double kMostSag = 3.2e-4;
 constexpr double kLeastSag = 16e-6;  // [m]
 constexpr double kSagOfBend = 0.25;  // A parabola's height in the middle.
-constexpr int kFitRings = 2;  // Of triangles around those of a corner, for its normal: a choice.
-constexpr int kMostTriangles = 64;  // That a foot is looked for on: a choice.
-// Of Newton's method: each leaves distance / radius of what was wrong beside the foot, whose square
-// is wrong in the distance.
+constexpr int kFitRings =
+    2;  // Rings of triangles beside those of a corner, for its normal: a choice.
+constexpr int kMostTriangles = 64;  // Bounds the triangles on the way to a foot: a choice.
+// Steps of Newton's method: each leaves distance / radius of what was wrong beside the foot, whose
+// square is wrong in the distance.
 constexpr int kFootSteps = 2;
 constexpr double kWithin = 1e-9;        // Weights this far below zero are within: rounding.
 constexpr double kContinued = 1.0 / 3;  // How far a patch is continued beyond a rim, in weights.
@@ -60,7 +61,7 @@ class Patch {
     return ab_ - (w.a - w.b) * bend0_ - w.c * (bend1_ - bend2_);
   }
 
-  // And of the third.
+  // Derivative by the weight of the third corner.
   [[nodiscard]] Vec3 AlongC(const Weights& w) const {
     return ac_ + w.b * (bend0_ - bend1_) - (w.a - w.c) * bend2_;
   }
@@ -133,7 +134,7 @@ std::uint32_t AcrossSmooth(const Mesh& mesh, std::uint32_t t, std::size_t k) {
 class NormalFinder {
  public:
   NormalFinder(const std::vector<spatial::Surface>& faces, const Mesh& mesh)
-      : faces_(faces), mesh_(mesh) {}
+      : faces_(faces), mesh_(mesh), found_by_(mesh.triangles.size(), 0) {}
 
   /** The normal in corner k of triangle t, for all triangles around it in this face: those are told
    to `visit` with the number of their corner. */
@@ -141,6 +142,7 @@ class NormalFinder {
   Vec3 Find(std::uint32_t t, std::size_t k, Visit visit) {
     const std::uint32_t v = mesh_.triangles[t][k];
     near_.clear();
+    ++search_;
     corner_normal_.setZero();
     has_analytic_ = false;
     Walk(t, k, v, true, visit);
@@ -152,30 +154,34 @@ class NormalFinder {
   // Goes around a corner from triangle to triangle, one way.
   template <typename Visit>
   void Walk(std::uint32_t t, std::size_t k, std::uint32_t v, bool is_forward, Visit visit) {
-    std::uint32_t at = t;
-    std::size_t corner = k;
+    Mesh::Corner at{t, k};
     for (;;) {
-      if (std::find(near_.begin(), near_.end(), at) == near_.end()) {
-        near_.push_back(at);
-        corner_normal_ += Angle(at, corner) * mesh_.NormalOf(at);
-        visit(at, corner);
-      } else if (at != t) {
+      if (AddNear(at.triangle)) {
+        corner_normal_ += Angle(at.triangle, at.k) * mesh_.NormalOf(at.triangle);
+        visit(at.triangle, at.k);
+      } else if (at.triangle != t) {
         return;
       }
-      const std::size_t edge = is_forward ? corner : (corner + 2) % 3;
-      const std::uint32_t next = AcrossWithinFace(mesh_, at, edge);
-      if (next == kNoFace) {
-        NoteAnalytic(at, edge, v);
+      const std::size_t edge = is_forward ? at.k : (at.k + 2) % 3;
+      if (AcrossWithinFace(mesh_, at.triangle, edge) == kNoFace) {
+        NoteAnalytic(at.triangle, edge, v);
         return;
       }
-      at = next;
-      const auto& corners = mesh_.triangles[at];
-      const auto* const found = std::find(corners.begin(), corners.end(), v);
-      if (found == corners.end() || at == t) {
+      at = mesh_.TurnAbout(at, is_forward);
+      if (at.triangle == kNoFace || at.triangle == t) {
         return;
       }
-      corner = static_cast<std::size_t>(found - corners.begin());
     }
+  }
+
+  // False where it is there already.
+  bool AddNear(std::uint32_t t) {
+    if (found_by_[t] == search_) {
+      return false;
+    }
+    found_by_[t] = search_;
+    near_.push_back(t);
+    return true;
   }
 
   [[nodiscard]] double Angle(std::uint32_t t, std::size_t k) const {
@@ -205,8 +211,8 @@ class NormalFinder {
       for (std::size_t i = 0; i < end; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t next = AcrossWithinFace(mesh_, near_[i], k);
-          if (next != kNoFace && std::find(near_.begin(), near_.end(), next) == near_.end()) {
-            near_.push_back(next);
+          if (next != kNoFace) {
+            AddNear(next);
           }
         }
       }
@@ -269,6 +275,8 @@ class NormalFinder {
   const std::vector<spatial::Surface>& faces_;
   const Mesh& mesh_;
   std::vector<std::uint32_t> near_;
+  std::vector<std::uint32_t> found_by_;  // The number of the search that found a triangle last.
+  std::uint32_t search_{0};
   std::vector<std::uint32_t> points_;
   Vec3 corner_normal_{Vec3::Zero()};
   Vec3 analytic_{Vec3::Zero()};
@@ -278,7 +286,7 @@ class NormalFinder {
 Vec3 CalcBend(const Vec3& d, const Vec3& n0, const Vec3& n1, double most_sag) {
   const Vec3 sum = n0 + n1;
   const double length = sum.norm();
-  const double cosine = 0.5 * length;  // Of half the angle between the normals.
+  const double cosine = 0.5 * length;  // The cosine of half the angle between the normals.
   constexpr double kTooFar = 0.7;      // 90 degrees between the normals: an edge, no arc. A choice.
   if (!(cosine > kTooFar)) {
     return Vec3::Zero();

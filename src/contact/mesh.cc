@@ -259,23 +259,31 @@ std::uint32_t Mesh::NeighbourOn(std::uint32_t triangle, std::uint32_t on_face) c
   return found != around.end() ? *found : kNoFace;
 }
 
+Mesh::Corner Mesh::TurnAbout(const Corner& at, bool is_forward) const noexcept {
+  const std::uint32_t corner = triangles[at.triangle][at.k];
+  const std::uint32_t next = neighbour[at.triangle][is_forward ? at.k : (at.k + 2) % 3];
+  if (next == kNoFace) {
+    return {};
+  }
+  const auto& corners = triangles[next];
+  const auto* const found = std::find(corners.begin(), corners.end(), corner);
+  return found != corners.end() ? Corner{next, static_cast<std::size_t>(found - corners.begin())}
+                                : Corner{};
+}
+
 std::uint32_t Mesh::AroundOn(std::uint32_t triangle, std::size_t k,
                              std::uint32_t on_face) const noexcept {
-  constexpr int kMost = 32;  // Triangles around a corner, each way: a choice.
-  const std::uint32_t corner = triangles[triangle][k];
-  for (const std::size_t turn : {0U, 2U}) {
-    std::uint32_t t = triangle;
-    std::size_t at = k;
+  constexpr int kMost = 32;  // Bounds the triangles around a corner, each way: a choice.
+  for (const bool is_forward : {true, false}) {
+    Corner at{triangle, k};
     for (int i = 0; i < kMost; ++i) {
-      t = neighbour[t][(at + turn) % 3];
-      if (t == kNoFace || t == triangle) {
+      at = TurnAbout(at, is_forward);
+      if (at.triangle == kNoFace || at.triangle == triangle) {
         break;
       }
-      if (face[t] == on_face) {
-        return t;
+      if (face[at.triangle] == on_face) {
+        return at.triangle;
       }
-      const auto* const found = std::find(triangles[t].begin(), triangles[t].end(), corner);
-      at = static_cast<std::size_t>(found - triangles[t].begin()) % 3;
     }
   }
   return kNoFace;

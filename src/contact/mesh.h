@@ -162,6 +162,16 @@ struct Mesh {
   [[nodiscard]] std::uint32_t NeighbourOn(std::uint32_t triangle,
                                           std::uint32_t on_face) const noexcept;
 
+  /** A triangle, and the number of one of its corners. */
+  struct Corner {
+    std::uint32_t triangle{kNoFace};
+    std::size_t k{0};
+  };
+
+  /** Turns about a corner to the next triangle, across edge k or, backwards, the one before it.
+   kNoFace where there is none. */
+  [[nodiscard]] Corner TurnAbout(const Corner& at, bool is_forward) const noexcept;
+
   /** Finds a triangle of a face around corner k of a triangle; kNoFace where none is found. */
   [[nodiscard]] std::uint32_t AroundOn(std::uint32_t triangle, std::size_t k,
                                        std::uint32_t on_face) const noexcept;

@@ -68,6 +68,16 @@ class Track {
     return squared > 0 ? Vec3(at.gradient.dot(tangent) / squared * tangent) : Vec3::Zero();
   }
 
+  // The place that a contact is at, with the gradient of its distance.
+  [[nodiscard]] State Begin(const RawContact& contact, const Vec3& gradient) {
+    State start;
+    start.p = contact.p;
+    start.distance = contact.distance;
+    start.gradient = gradient;
+    FindNormals(&start);
+    return start;
+  }
+
   // Finds the normals of the faces at a place on them.
   void FindNormals(State* at) {
     at->normals[0] = first_.CalcDistance(at->p).gradient;
@@ -188,11 +198,7 @@ void Slide(const Placed& sampled, const Shell& shell, const Placed& field,
   const auto evaluate = [&](State* s) {
     return evaluate_to(std::numeric_limits<double>::infinity(), s);
   };
-  State start;
-  start.p = contact->p;
-  start.distance = contact->distance;
-  start.gradient = X_FS.R.transpose() * contact->gradient;
-  track.FindNormals(&start);
+  const State start = track.Begin(*contact, X_FS.R.transpose() * contact->gradient);
   // With freeform faces the face's surface alone is asked on the way, and the whole shape where it
   // leads: a foot on a mesh takes long.
   FaceSurface surface(*field.shape, field.offsets, face, contact->triangle);
@@ -234,11 +240,7 @@ void SlideOnPlane(const Placed& sampled, const Shell& shell, const spatial::Surf
     s->gradient = plane.axis;
     return true;
   };
-  State start;
-  start.p = contact->p;
-  start.distance = contact->distance;
-  start.gradient = plane.axis;
-  track.FindNormals(&start);
+  const State start = track.Begin(*contact, plane.axis);
   bool is_barred = false;
   const State end = Descend(
       start, &track, evaluate, [](const State&) { return true; }, &is_barred);

@@ -22,7 +22,7 @@ struct EmulatorOptions {
 
 /** The lag behind the machine's clock beyond which a live emulator has been asleep, as its process
  may be; it then goes on from where it was: a choice. */
-inline constexpr std::int64_t kMaxLagNs = 20'000'000;
+inline constexpr std::int64_t kMaxLiveLagNs = 20'000'000;
 
 /** An emulator of the devices of one driver: the vendor's interface (a stub library with the same
  symbols, or a server with the same protocol) around an EmulatedDevice. The real driver opens it

@@ -77,7 +77,7 @@ class LivePort final : public EmulatedPort {
     const std::scoped_lock lock(mutex_);
     const std::int64_t now_ns = MonotonicNs();
     if (now_ns - last_ns_ >= kLeastNs) {
-      device_->Advance(std::min(now_ns - last_ns_, kMaxLagNs));
+      device_->Advance(std::min(now_ns - last_ns_, kMaxLiveLagNs));
       last_ns_ = now_ns;
     }
   }

@@ -82,7 +82,7 @@ class WireEmulator final : public Emulator {
         const std::scoped_lock lock(mutex_);
         if (is_live_) {
           const std::int64_t now_ns = MonotonicNs();
-          Step(std::min(now_ns - before_ns, kMaxLagNs));
+          Step(std::min(now_ns - before_ns, kMaxLiveLagNs));
           before_ns = now_ns;
         } else {
           server_->Serve();
