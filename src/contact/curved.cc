@@ -300,9 +300,7 @@ Vec3 CalcBend(const Vec3& d, const Vec3& n0, const Vec3& n1, double most_sag) {
 void FindBends(double diagonal, ExactTable* exact, Mesh* mesh) {
   const std::vector<spatial::Surface>& faces = exact->faces;
   const double most_sag = std::max(kMostSag * diagonal, kLeastSag);
-  const auto is_freeform = [&](std::uint32_t t) {
-    return faces[mesh->face[t]].kind == spatial::SurfaceKind::kFreeform;
-  };
+  const auto is_freeform = [&](std::uint32_t t) { return exact->IsFreeform(mesh->face[t]); };
   const auto count = static_cast<std::uint32_t>(mesh->triangles.size());
   mesh->bends.clear();
   std::vector<std::uint32_t> wanted;

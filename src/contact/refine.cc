@@ -87,10 +87,6 @@ bool FromCurved(const Shape::Data& shape, std::uint32_t triangle, const Vec3& p,
   return true;
 }
 
-bool IsFreeform(const Shape::Data& shape, std::uint32_t face) {
-  return face != kNoFace && shape.exact.faces[face].kind == spatial::SurfaceKind::kFreeform;
-}
-
 // Whether a distance that is wrong by no more than `error` is good enough.
 bool IsRoughEnough(const FaceFilter& filter, double distance, double error) {
   return filter.allows_rough && distance > 2 * error;
@@ -109,7 +105,7 @@ Refined FromFace(const Shape::Data& shape, const Closest& closest, std::uint32_t
     result.is_exact = true;
     return result;
   }
-  const bool is_freeform = IsFreeform(shape, face);
+  const bool is_freeform = shape.exact.IsFreeform(face);
   const bool is_rough = IsRoughEnough(filter, sign * mesh_distance, tolerance);
   if (is_freeform && !is_rough && FromCurved(shape, closest.triangle, p, &result)) {
     return result;
@@ -138,7 +134,9 @@ Refined FromEdge(const Shape::Data& shape, const Closest& closest, const SolidFe
           ? 4 * (shape.exact.deviation[feature.face] + shape.exact.deviation[feature.other_face]) +
                 kOnFeature
           : 0;
-  const bool is_freeform = IsFreeform(shape, feature.face) || IsFreeform(shape, feature.other_face);
+  const bool is_freeform =
+      shape.exact.IsFreeform(feature.face) ||
+      (feature.other_face != kNoFace && shape.exact.IsFreeform(feature.other_face));
   result.is_rough =
       is_freeform && IsRoughEnough(filter, sign * std::sqrt(closest.squared), tolerance);
   if (feature.kind == VertexKind::kOnEdge && !result.is_rough) {

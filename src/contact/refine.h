@@ -229,9 +229,7 @@ class FaceSurface {
               std::uint32_t triangle = kNoFace)
       : shape_(shape), offsets_(offsets), face_(face), triangle_(triangle) {}
 
-  [[nodiscard]] bool is_freeform() const noexcept {
-    return shape_.exact.faces[face_].kind == spatial::SurfaceKind::kFreeform;
-  }
+  [[nodiscard]] bool is_freeform() const noexcept { return shape_.exact.IsFreeform(face_); }
 
   /** A freeform face is, where a triangle of it is. */
   [[nodiscard]] bool is_known() const noexcept { return !is_freeform() || triangle_ != kNoFace; }

@@ -55,8 +55,7 @@ void DropUnusedTriangles(Shape::Data* data) {
     is_used[exact.Listed(i).triangle] = true;
   }
   for (std::size_t t = 0; t < is_used.size(); ++t) {
-    is_used[t] =
-        is_used[t] || exact.faces[data->mesh.face[t]].kind == spatial::SurfaceKind::kFreeform;
+    is_used[t] = is_used[t] || exact.IsFreeform(data->mesh.face[t]);
   }
   std::vector<std::uint32_t> number;
   data->mesh = KeepTriangles(data->mesh, is_used, &number);

@@ -204,7 +204,7 @@ void Shape::Data::Complete() {
   }
   exact.most_deviation = 0;
   for (std::size_t f = 0; f < exact.faces.size(); ++f) {
-    if (exact.faces[f].kind != spatial::SurfaceKind::kFreeform) {
+    if (!exact.IsFreeform(static_cast<std::uint32_t>(f))) {
       exact.most_deviation = std::max(exact.most_deviation, exact.deviation[f]);
     }
   }

@@ -51,6 +51,10 @@ struct ExactTable {
   std::vector<FaceForm> forms;        ///< Each face's form.
   double most_deviation{0};           ///< The largest of analytic faces [m]; Complete finds it.
 
+  [[nodiscard]] bool IsFreeform(std::uint32_t face) const noexcept {
+    return faces[face].kind == spatial::SurfaceKind::kFreeform;
+  }
+
   [[nodiscard]] ListedTriangle Listed(std::size_t i) const noexcept {
     const std::uint32_t entry = listed[i];
     return {entry >> distance_bits, (entry & ((1U << distance_bits) - 1U)) * distance_unit};

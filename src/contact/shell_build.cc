@@ -143,10 +143,6 @@ void AddCorners(const Shape::Data& data, Sampler* sampler) {
   }
 }
 
-bool IsFreeform(const Shape::Data& data, std::uint32_t f) {
-  return data.exact.faces[f].kind == spatial::SurfaceKind::kFreeform;
-}
-
 // The faces on both sides of a triangle's edge.
 struct Edge {
   const Shape::Data& data;
@@ -197,7 +193,7 @@ void AddEdges(const Shape::Data& data, Sampler* sampler) {
       const std::uint32_t f = mesh.face[t];
       const std::uint32_t g = mesh.face[n];
       const Edge edge{data, t, n};
-      const bool is_freeform = IsFreeform(data, f) || IsFreeform(data, g);
+      const bool is_freeform = data.exact.IsFreeform(f) || data.exact.IsFreeform(g);
       Vec3 middle = 0.5 * (a + b);
       const bool slides = !is_freeform || edge.Project(&middle);
       const double spacing = (slides ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
@@ -292,7 +288,7 @@ void AddFace(const Shape::Data& data, std::uint32_t f, const std::vector<std::ui
     return;
   }
   const FacePlan plan = PlanOf(data, f, triangles);
-  const bool is_freeform = IsFreeform(data, f);
+  const bool is_freeform = data.exact.IsFreeform(f);
   Sampler stretched(spacing);
   const int tries =
       8 + static_cast<int>(kTriesPerSample * plan.area_scale * area / (spacing * spacing));
