@@ -124,8 +124,8 @@ struct Mesh {
   std::vector<ShortVec3> vertex_normals;  ///< Angle-weighted pseudonormals, not unit.
   std::vector<std::array<std::uint32_t, 2>> vertex_faces;  ///< Both faces of a kOnEdge.
   std::vector<std::uint8_t> is_vertex_open;
-  /** Each triangle's bends, zero on analytic faces (contact/curved.h); empty where no face is
-   freeform. */
+  /** Each triangle's bends, zero on analytic faces (contact/smooth_surface.h); empty where no face
+   is freeform. */
   std::vector<std::array<ShortVec3, 3>> bends;
   bool is_closed{true};
 

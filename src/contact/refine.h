@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/curved.h"
 #include "contact/face_offsets.h"
 #include "contact/shape_data.h"
+#include "contact/smooth_surface.h"
 
 namespace hvas::contact {
 

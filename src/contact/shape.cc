@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "contact/curved.h"
 #include "contact/field_build.h"
 #include "contact/helix_fit.h"
 #include "contact/shape_data.h"
 #include "contact/shell_build.h"
+#include "contact/smooth_surface.h"
 
 namespace hvas::contact {
 namespace {

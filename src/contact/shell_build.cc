@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "base/random.h"
-#include "contact/curved.h"
 #include "contact/refine.h"
+#include "contact/smooth_surface.h"
 #include "spatial/box.h"
 #include "spatial/decompose.h"
 

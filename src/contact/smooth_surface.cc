@@ -1,4 +1,4 @@
-#include "contact/curved.h"
+#include "contact/smooth_surface.h"
 
 #include <algorithm>
 #include <cmath>

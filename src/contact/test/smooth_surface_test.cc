@@ -1,6 +1,6 @@
 // The smooth surface of freeform faces against the surfaces that their meshes were made of.
 
-#include "contact/curved.h"
+#include "contact/smooth_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,7 @@ Errors OfRing(double deviation) {
 
 // Chords of length h leave an arc by h^2 / 8R. Normals found from corners are wrong by h^2, and the
 // patches that have them by h^3: of a mesh four times as close, by an eighth.
-TEST(CurvedSurface, IsOfThirdOrder) {
+TEST(SmoothSurface, IsOfThirdOrder) {
   const Errors coarse = OfRing(8e-6);
   const Errors middle = OfRing(2e-6);
   const Errors fine = OfRing(0.5e-6);
@@ -80,7 +80,7 @@ TEST(CurvedSurface, IsOfThirdOrder) {
   EXPECT_LT(fine.direction, middle.direction / 3.5);
 }
 
-TEST(CurvedSurface, HasNoGapBetweenNeighbours) {
+TEST(SmoothSurface, HasNoGapBetweenNeighbours) {
   const Curved ring(WithoutSurfaces(testing::Ring(kMajor, kMinor, 4e-6)));
   constexpr double kCorners[3][2] = {{0, 0}, {1, 0}, {0, 1}};
   const auto on_edge = [&](std::uint32_t t, std::uint32_t from, std::uint32_t to, double share) {
@@ -108,7 +108,7 @@ TEST(CurvedSurface, HasNoGapBetweenNeighbours) {
 }
 
 // Flat faces of a freeform one, and meshes that are too coarse to be of a smooth face.
-TEST(CurvedSurface, LeavesWhatIsNotSmoothAsItIs) {
+TEST(SmoothSurface, LeavesWhatIsNotSmoothAsItIs) {
   const Curved block(WithoutSurfaces(testing::Block({10e-3, 8e-3, 5e-3})));
   EXPECT_EQ(*std::max_element(block.exact.deviation.begin(), block.exact.deviation.end()), 0);
   const Curved bar(WithoutSurfaces(testing::Shaft(10e-3, 30e-3, 200e-6)));  // Of 16 sides or so.
@@ -117,7 +117,7 @@ TEST(CurvedSurface, LeavesWhatIsNotSmoothAsItIs) {
   EXPECT_NEAR(shaft.exact.deviation[1], 4e-6, 1e-6);
 }
 
-TEST(CurvedSurface, EndsWhereItsFaceDoes) {
+TEST(SmoothSurface, EndsWhereItsFaceDoes) {
   const Curved shaft(WithoutSurfaces(testing::Shaft(10e-3, 30e-3, 1e-6)));
   std::uint32_t side = 0;  // Near the y axis.
   while (shaft.mesh.face[side] != 1 || shaft.mesh.NormalOf(side).y() < 0.99) {
