@@ -27,6 +27,11 @@ target_include_directories(hvas_settings INTERFACE ${PROJECT_SOURCE_DIR}/src)
 # No contraction: the same source gives the same bits with every optimisation level and kernel.
 target_compile_options(hvas_settings INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
                        -Wconversion -Wdouble-promotion -Wnon-virtual-dtor)
+# An index outside of its container, and a write over the end of the stack's frame, end the program in every build.
+add_library(hvas_hardening INTERFACE)
+target_compile_definitions(hvas_hardening INTERFACE _GLIBCXX_ASSERTIONS)
+target_compile_options(hvas_hardening INTERFACE -fstack-protector-strong)
+target_link_libraries(hvas_settings INTERFACE hvas_hardening)
 if(HVAS_WERROR)
   target_compile_options(hvas_settings INTERFACE -Werror)
 endif()

@@ -3,10 +3,10 @@
 # time to compile at -O1 than at -O2, and are not what takes time when they run.
 set(HVAS_KINDS rooms texts tests runs)
 set(HVAS_OPTIONS_rooms)
-set(HVAS_OPTIONS_texts)
-if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo)
-  set(HVAS_OPTIONS_texts -O1)
+if(NOT HVAS_SANITIZE)
+  set(HVAS_OPTIONS_rooms $<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)  # Needs optimisation.
 endif()
+set(HVAS_OPTIONS_texts ${HVAS_OPTIONS_rooms} $<$<CONFIG:Release>:-O1>)
 set(HVAS_OPTIONS_tests ${HVAS_OPTIONS_texts})
 set(HVAS_OPTIONS_runs -O0)
 
@@ -56,17 +56,6 @@ function(hvas_library name)
     hvas_compile_as(hvas_${name} texts)
   else()
     hvas_compile_as(hvas_${name} rooms)
-  endif()
-endfunction()
-
-# hvas_symbols_apart(<program>): leaves the debug information beside the program, in <program>.debug, where gdb and
-# addr2line find it; it is most of the program's size.
-function(hvas_symbols_apart name)
-  if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo AND CMAKE_OBJCOPY)
-    add_custom_command(TARGET ${name} POST_BUILD
-      COMMAND ${CMAKE_OBJCOPY} --only-keep-debug $<TARGET_FILE:${name}> $<TARGET_FILE:${name}>.debug
-      COMMAND ${CMAKE_OBJCOPY} --strip-unneeded --add-gnu-debuglink=$<TARGET_FILE:${name}>.debug $<TARGET_FILE:${name}>
-      VERBATIM)
   endif()
 endfunction()
 

@@ -8,7 +8,7 @@ import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 import WebSocket from "ws";
 
-export const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
+export const kProgram = process.env["HVAS_BINARY"] ?? "../build/release/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
 const kPatienceMs = 120_000;  // for what happens at once where nothing is wrong

@@ -3,7 +3,7 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { StudyPeer } from "./study_peer.mjs";
 
-const kProgram = process.env["HVAS_BINARY"] ?? "../build/dev/src/app/hvas";
+const kProgram = process.env["HVAS_BINARY"] ?? "../build/release/src/app/hvas";
 const kPage = process.env["HVAS_PAGE"] ?? "../build/web/dist";
 
 async function startMockStudy() {

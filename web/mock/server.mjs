@@ -1,5 +1,5 @@
 // A stand-in for the studio's server, to work on the page without it:
-//   npm run build && npm run mock -- --hvas ../build/dev/src/app/hvas --file ../products/gear_pump.step
+//   npm run build && npm run mock -- --hvas ../build/release/src/app/hvas --file ../products/gear_pump.step
 //   ... --study   a tiny study in place of the studio. SIGUSR1: somebody puts the part half in, and wholly at the next one.
 //                 SIGUSR2: all connections are lost, until the next one.
 // It has the routes, headers and messages of docs/protocol.md, and a toy in place of the simulation.
@@ -20,7 +20,7 @@ import { eventFor, handFor, MockStudy, sceneFor } from "./study.mjs";
 const { values: options } = parseArgs({
   options: {
     port: { type: "string", default: "8600" },
-    hvas: { type: "string", default: "../build/dev/src/app/hvas" },
+    hvas: { type: "string", default: "../build/release/src/app/hvas" },
     file: { type: "string" },
     study: { type: "boolean", default: false },
     example: { type: "string", default: "../products/gear_pump.step" },

@@ -1,6 +1,6 @@
 // Pictures of the studio in its states for docs/studio_pictures.md, by headless Chromium and the program itself:
 //   node tools/pictures.mjs [--out ../docs/pictures/studio] [--only phone]
-// The program is build/dev/src/app/hvas, as for the tests of the page.
+// The program is build/release/src/app/hvas, as for the tests of the page.
 
 import { mkdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
