@@ -67,9 +67,11 @@ function(hvas_compile_alone)
 endfunction()
 
 # hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s] [RUNS]): one GoogleTest program, one
-# ctest entry. Those of the highest cost begin first, so that no long one is left to run alone. Unit tests are fast and need no other room's data; label slower ones
-# `e2e`, or `numeric` where they only compare figures, so that the sanitizer runs can leave them out. A test with RUNS only
-# starts programs or calls rooms, which do the work: it is not optimised.
+# ctest entry. Those of the highest cost begin first, so that no long one is left to run alone. Labels say where a test runs
+# (see ./test): `unit`, the default, is fast and needs no other room's data; `e2e` takes longer, or starts programs;
+# `numeric` only compares figures, so that sanitizers have nothing to see; `thread` runs under the thread sanitizer; `smoke`
+# runs after every change; `release` in `./test all` only. A test with RUNS only starts programs or calls rooms, which do
+# the work: it is not optimised.
 function(hvas_test name)
   cmake_parse_arguments(ARG "RUNS" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

@@ -8,12 +8,12 @@ fail() {
   exit 1
 }
 
-# Installs the packages of packages.txt that are not there. Touches apt only when one is missing.
+# install_packages LIST...: installs the packages of these lists that are missing. Touches apt only when one is.
 install_packages() {
   local packages missing=()
-  mapfile -t packages < <(grep -v '^[[:space:]]*\(#\|$\)' "$root/packages.txt")
+  mapfile -t packages < <(cd "$root" && grep -hv '^[[:space:]]*\(#\|$\)' "$@")
   command -v dpkg-query >/dev/null ||
-    fail "this is not Debian: install what packages.txt names by hand, then run cmake as CONTRIBUTING.md shows"
+    fail "this is not Debian: install by hand what $* names, then run cmake as CONTRIBUTING.md shows"
   local installed
   installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "${packages[@]}" 2>/dev/null |
     awk '$1 == "ii" { print $2 }') || true
@@ -46,12 +46,12 @@ count_jobs() {
   echo $((jobs > 0 ? jobs : 1))
 }
 
-# configure PRESET
+# configure PRESET [ARGUMENT...]: with more arguments for cmake.
 configure() {
   export CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=1  # clones in other folders share what is compiled
   export CCACHE_SLOPPINESS=pch_defines,time_macros  # or nothing that uses a precompiled header is kept
   local log
-  if ! log=$(cd "$root" && cmake --preset "$1" 2>&1); then
+  if ! log=$(cd "$root" && cmake --preset "$@" 2>&1); then
     say "$log"
     fail "cmake --preset $1 failed"
   fi

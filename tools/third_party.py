@@ -50,8 +50,8 @@ PARTS = {
         "libocct-visualization-dev",
     )
 }
-# Of packages.txt, but not in the program.
-NOT_SHIPPED = {"libbenchmark-dev", "libfcl-dev", "libgtest-dev", "libmujoco-dev", "libompl-dev"}
+# Of packages_test.txt, but in the Python package.
+IN_PYTHON = {"pybind11-dev"}
 # Whole texts that several of the notes refer to.
 COMMON = {"Apache-2.0": "Apache License 2.0", "LGPL-2.1": "GNU Lesser General Public License 2.1",
           "CC0-1.0": "Creative Commons CC0 1.0"}
@@ -67,8 +67,8 @@ others of the same interface; of the rest, parts are compiled into it. This file
 def packages():
     """The development packages of packages.txt that end up in the program, OpenCASCADE's as one."""
     lines = (ROOT / "packages.txt").read_text().split("\n")
-    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|coinor-[^ ]*|[^ ]*json[^ ]*|pybind11|zlib1g)-dev", line)}
-    return {PARTS.get(name, name) for name in names - NOT_SHIPPED}
+    names = {line for line in lines if re.fullmatch(r"(lib[^ ]*|coinor-[^ ]*|[^ ]*json[^ ]*|zlib1g)-dev", line)}
+    return {PARTS.get(name, name) for name in names | IN_PYTHON}
 
 
 def bundled(lock):

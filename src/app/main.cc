@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <string>
 
 #include "app/command_line.h"
+#include "base/crash_note.h"
 #include "device/force_withdrawal.h"
 
 namespace {
@@ -22,11 +24,22 @@ int FlushOutput(int status) {
   return status != 0 ? status : 1;
 }
 
+/** The command line, for the message of a crash. */
+std::string JoinArguments(int argc, char** argv) {
+  std::string text = "hvas";
+  for (int i = 1; i < argc; ++i) {
+    text += ' ';
+    text += argv[i];
+  }
+  return text;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   hvas::device::WithdrawForcesAtTheEnd();
   try {
+    hvas::NoteWork(JoinArguments(argc, argv));
     return FlushOutput(hvas::app::RunCommandLine(argc, argv));
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "hvas: %s\n", exception.what());  // Of memory, as a rule.

@@ -8,6 +8,7 @@
 #include <exception>
 #include <thread>
 
+#include "base/crash_note.h"
 #include "device/device.h"
 
 namespace hvas::device {
@@ -20,12 +21,17 @@ constexpr std::size_t kMostDevices = 64;
 // has run.
 constexpr int kHandOnPeriods = 100;
 constexpr std::chrono::milliseconds kHandOnPeriod{1};
+constexpr std::array kCrashes{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
+constexpr std::array kEnds{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+constexpr std::size_t kHandlerStack = 64 * 1024;  // [bytes] A choice: the handler's frames are small.
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the end of the process is
 // global.
 std::array<std::atomic<Device*>, kMostDevices> open_devices{};
 std::atomic<bool> is_withdrawn{false};
 std::terminate_handler terminate_before = nullptr;
+// The handler runs here where the stack itself has overflowed.
+std::array<std::byte, kHandlerStack> handler_stack{};
 
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
@@ -46,6 +52,9 @@ void LetOthersHandOn() noexcept {
 /** The handler is reset by then: raised again, the signal does what it does. */
 void OnSignal(int signal) {
   WithdrawForces();
+  if (std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end()) {
+    WriteCrashNote(signal);
+  }
   static_cast<void>(std::raise(signal));
 }
 
@@ -77,15 +86,18 @@ void WithdrawForcesAtTheEnd() {
   struct sigaction action {};
 
   action.sa_handler = &OnSignal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal :
-       {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_ONSTACK;
+  const stack_t stack{handler_stack.data(), 0, handler_stack.size()};
+  ::sigaltstack(&stack, nullptr);
+  const auto handle = [&action](int signal) {
     struct sigaction present {};
 
     if (::sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_DFL) {
       ::sigaction(signal, &action, nullptr);
     }
-  }
+  };
+  std::for_each(kCrashes.begin(), kCrashes.end(), handle);
+  std::for_each(kEnds.begin(), kEnds.end(), handle);
 }
 
 bool NoteOpenDevice(Device* device) noexcept {

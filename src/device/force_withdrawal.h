@@ -14,7 +14,8 @@ void WithdrawForces() noexcept;
 [[nodiscard]] bool AreForcesWithdrawn() noexcept;
 
 /** Withdraws forces before the process ends by std::terminate or by a signal that is not handled
- otherwise, and then lets it end as it would have. To be called once, by main(). */
+ otherwise, writes a note where it crashes (base/crash_note.h), and then lets it end as it would
+ have. To be called once, by main(). */
 void WithdrawForcesAtTheEnd();
 
 /** Adds a device to those whose forces WithdrawForces() withdraws. @returns false when 64 devices

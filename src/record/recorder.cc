@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/crash_note.h"
 #include "base/ring.h"
 #include "record/packing.h"
 #include "record/session_digest.h"
@@ -213,6 +214,7 @@ Result<std::unique_ptr<Recorder>> Recorder::Create(const RecorderOptions& option
       return Unexpected(created.error());
     }
     file.emplace(std::move(*created));
+    NoteRecord(options.path.native());
   }
   return std::unique_ptr<Recorder>(new Recorder(std::make_unique<Impl>(std::move(file), options)));
 }
@@ -259,6 +261,7 @@ Result<void> Recorder::Finish() {
     const std::scoped_lock lock(impl_->mutex);
     impl_->sink.Close({{kMetaDropped, std::to_string(dropped_ticks())},
                        {kMetaDroppedFrames, std::to_string(dropped_frames())}});
+    NoteRecord({});
   }
   if (const std::optional<Error> failed = error()) {
     return Unexpected(*failed);

@@ -294,7 +294,7 @@ Result<void> Journal::Write(const std::string& line) {
   }
   if (error != 0) {
     // The incomplete line is removed, so that the next one starts a new line.
-    static_cast<void>(::ftruncate(file_.value(), size_));
+    [[maybe_unused]] const int not_cut = ::ftruncate(file_.value(), size_);
     static_cast<void>(::lseek(file_.value(), size_, SEEK_SET));
     return FailToAppend(path_, error);
   }

@@ -19,6 +19,7 @@
 #include "assembly/explain_gaps.h"
 #include "assembly/prepare_model.h"
 #include "base/clock.h"
+#include "base/crash_note.h"
 #include "record/recorder.h"
 
 namespace hvas::app {
@@ -38,6 +39,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
       progress->stage = stage;
       progress->fraction = fraction;
     }
+    NoteStage(stage);
     if (is_shown) {
       ShowProgress(stage, fraction);
     }

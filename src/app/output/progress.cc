@@ -13,6 +13,7 @@
 #include "app/output/terminal.h"
 #include "app/output/text_layout.h"
 #include "base/clock.h"
+#include "base/crash_note.h"
 
 namespace hvas::app {
 namespace {
@@ -29,6 +30,7 @@ bool IsWatched() {
 void ShowProgress(std::string_view stage, double fraction) {
   static std::string last_stage;
   static std::int64_t last_ns = 0;
+  NoteStage(fraction < 1 ? stage : "");
   const std::int64_t now_ns = MonotonicNs();
   if (fraction >= 1) {
     last_stage.clear();

@@ -91,7 +91,7 @@ Transfer EvdevNode::TryReceive(std::span<input_event> events, std::size_t* count
 
 void EvdevNode::Send(std::span<const input_event> events) const noexcept {
   const iovec piece{const_cast<input_event*>(events.data()), events.size_bytes()};
-  (void)::writev(events_.value(), &piece, 1);
+  [[maybe_unused]] const ssize_t count = ::writev(events_.value(), &piece, 1);
 }
 
 Error EvdevProblem(int reason, const std::filesystem::path& path) {

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/crash_note.h"
 #include "device/force_withdrawal.h"
 #include "device/test/live_rig.h"
 
@@ -148,6 +149,55 @@ TEST_P(ProcessEndTest, NoEndOfTheProcessLeavesAForceOnTheHand) {
   for (const auto& process : processes) {
     EXPECT_EQ(process->LastForce(), 0) << process->Describe();
   }
+}
+
+[[noreturn]] void CrashWithNotes(int signal) {
+  WithdrawForcesAtTheEnd();
+  NoteWork("hvas assemble pump.step");
+  NoteStage("contact shapes");
+  NoteRecord("/records/pump.hvas");
+  static_cast<void>(std::raise(signal));
+  ::_exit(0);
+}
+
+// Uses up the stack; the compiler cannot tell that it never comes back.
+int Recurse(const volatile int* before) {
+  const volatile int here = *before + 1;
+  return Recurse(&here) + here;
+}
+
+TEST(CrashNoteTest, CrashSaysWhatWasDoneAndWhereTheRecordIs) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) {
+    EXPECT_EXIT(CrashWithNotes(signal), ::testing::KilledBySignal(signal),
+                "the program crashed \\(SIG.*a defect of hvas, not of your file"
+                "[^$]*it was doing: hvas assemble pump.step"
+                "[^$]*at this stage: contact shapes"
+                "[^$]*is in: /records/pump.hvas");
+  }
+}
+
+TEST(CrashNoteTest, OverflowOfTheStackIsReportedAsACrash) {
+  const auto overflow = [] {
+    WithdrawForcesAtTheEnd();
+    NoteWork("hvas inspect deep.step");
+    const volatile int start = 0;
+    ::_exit(Recurse(&start));
+  };
+  EXPECT_EXIT(overflow(), ::testing::KilledBySignal(SIGSEGV),
+              "it was doing: hvas inspect deep.step");
+}
+
+TEST(CrashNoteTest, EndByASignalOfTheUserIsNoCrash) {
+  EXPECT_EXIT(CrashWithNotes(SIGTERM), ::testing::KilledBySignal(SIGTERM), "^$");
+}
+
+TEST(CrashNoteTest, NotesLongerThanTheirRoomAreCut) {
+  const auto crash = [] {
+    WithdrawForcesAtTheEnd();
+    NoteWork(std::string(100'000, 'x') + "end");
+    std::abort();
+  };
+  EXPECT_EXIT(crash(), ::testing::KilledBySignal(SIGABRT), "it was doing: x{400,600}\n");
 }
 
 }  // namespace
