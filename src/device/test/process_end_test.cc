@@ -163,7 +163,7 @@ TEST_P(ProcessEndTest, NoEndOfTheProcessLeavesAForceOnTheHand) {
 // Uses up the stack; the compiler cannot tell that it never comes back.
 int Recurse(const volatile int* before) {
   const volatile int here = *before + 1;
-  return Recurse(&here) + here;
+  return here < 0 ? 0 : Recurse(&here) + here;
 }
 
 TEST(CrashNoteTest, CrashSaysWhatWasDoneAndWhereTheRecordIs) {
