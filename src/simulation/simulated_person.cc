@@ -88,8 +88,7 @@ void SimulatedPerson::Begin(const PersonTask& task) noexcept {
 }
 
 void SimulatedPerson::StartReaches(Phase phase) noexcept {
-  phase_ = phase;
-  phase_time_s_ = 0;
+  BeginPhase(phase);
   reach_count_ = 0;
   reach_index_ = 0;
   reach_time_s_ = 0;
@@ -334,6 +333,11 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
   phase_time_s_ += dt_;
   is_guided_ = is_guided_ || input.hears_capture;
   const Vec3 p_ref_before = p_ref_;
+  StepPhase(input);
+  v_ref_ = (p_ref_ - p_ref_before) / dt_;
+}
+
+void SimulatedPerson::StepPhase(const OperatorInput& input) noexcept {
   switch (phase_) {
     case Phase::kDone: {
       PersonTask task;
@@ -343,24 +347,10 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       break;
     }
     case Phase::kReach:
-      if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
-          (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm && !IsTurning(kTurned)) {
-        phase_ = Phase::kGrasp;
-        phase_time_s_ = 0;
-        is_gripping_ = true;
-      }
+      StepReach();
       break;
     case Phase::kGrasp:
-      if (phase_time_s_ <= kGraspTime) {
-        break;
-      }
-      if (task_.takes_out) {
-        BeginWithdraw(0, options_.first_push);
-      } else if (task_.starts_on_way) {
-        BeginOnWay(input);
-      } else {
-        PlanCarry();
-      }
+      StepGrasp(input);
       break;
     case Phase::kCarry:
       if (FollowReaches() && HasCome(input)) {
@@ -368,20 +358,13 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       }
       break;
     case Phase::kApproach:
-      if (input.hears_seated) {
-        phase_ = Phase::kSettle;
-        phase_time_s_ = 0;
-      } else if (FollowReaches() && HasCome(input)) {
-        BeginInsert();
-      } else {
-        CorrectHold(input);
-      }
+      StepApproach(input);
       break;
     case Phase::kInsert:
       StepInsert(input);
       break;
     case Phase::kRest:
-      p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
+      Slacken();
       if (phase_time_s_ > kRestTime) {
         BeginWithdraw(TravelOf({q_ref_, p_ref_}), 0);
       }
@@ -390,11 +373,9 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
       StepWithdraw(input);
       break;
     case Phase::kSettle:
-      p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
+      Slacken();
       if (phase_time_s_ > kHandSettleTime) {
-        phase_ = Phase::kRelease;
-        phase_time_s_ = 0;
-        is_gripping_ = false;
+        BeginRelease();
       }
       break;
     case Phase::kRelease:
@@ -406,13 +387,55 @@ void SimulatedPerson::Decide(const OperatorInput& input) noexcept {
     case Phase::kPutDown:
     case Phase::kGiveUp:
       if (FollowReaches()) {
-        phase_ = Phase::kRelease;
-        phase_time_s_ = 0;
-        is_gripping_ = false;
+        BeginRelease();
       }
       break;
   }
-  v_ref_ = (p_ref_ - p_ref_before) / dt_;
+}
+
+void SimulatedPerson::StepReach() noexcept {
+  if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
+      (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm && !IsTurning(kTurned)) {
+    BeginPhase(Phase::kGrasp);
+    is_gripping_ = true;
+  }
+}
+
+void SimulatedPerson::StepGrasp(const OperatorInput& input) noexcept {
+  if (phase_time_s_ <= kGraspTime) {
+    return;
+  }
+  if (task_.takes_out) {
+    BeginWithdraw(0, options_.first_push);
+  } else if (task_.starts_on_way) {
+    BeginOnWay(input);
+  } else {
+    PlanCarry();
+  }
+}
+
+void SimulatedPerson::StepApproach(const OperatorInput& input) noexcept {
+  if (input.hears_seated) {
+    BeginPhase(Phase::kSettle);
+  } else if (FollowReaches() && HasCome(input)) {
+    BeginInsert();
+  } else {
+    CorrectHold(input);
+  }
+}
+
+void SimulatedPerson::BeginPhase(Phase phase) noexcept {
+  phase_ = phase;
+  phase_time_s_ = 0;
+}
+
+void SimulatedPerson::BeginRelease() noexcept {
+  BeginPhase(Phase::kRelease);
+  is_gripping_ = false;
+}
+
+void SimulatedPerson::Slacken() noexcept {
+  p_ref_ += (X_WH_.p() - p_ref_) * (dt_ / kSlackTime);
 }
 
 void SimulatedPerson::Watch(const OperatorInput& input) noexcept {

@@ -216,7 +216,32 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void BeginOnWay(const OperatorInput& input) noexcept;
   /** Lets a part go where it is. */
   void LeaveThere() noexcept;
+
+  /** How a part is being brought in: what of its path is known at this sample, and by which sense.
+   */
+  struct Insertion {
+    Vec3 d{Vec3::Zero()};   ///< Outward along the path.
+    double hand_travel{0};  ///< Distance to go of the hand [m].
+    double seen_travel{0};  ///< Distance to go of the part, as it is seen [m].
+    double travel{0};       ///< The one of the two that the person goes by [m].
+    bool is_by_eye{false};
+    bool is_by_touch{false};
+    bool is_led_by_hole{false};
+    bool is_careful{false};
+    bool is_inside{false};
+  };
+
   void StepInsert(const OperatorInput& input) noexcept;
+  /** Ends an insertion that is done, has come as far as it should, or has taken too long. */
+  bool EndInsertion(const OperatorInput& input, const Insertion& insertion) noexcept;
+  /** Chooses the senses that the part is led by. */
+  void ChooseSenses(const OperatorInput& input, Insertion* insertion) const noexcept;
+  void BackOff(const Insertion& insertion) noexcept;
+  /** Pushes the part on, and yields or searches where it does not move. */
+  void PressOn(const OperatorInput& input, const Insertion& insertion) noexcept;
+  /** Moves the reference along the path. Returns whether the part is stuck. */
+  bool AdvanceTravel(const OperatorInput& input, const Insertion& insertion, double speed,
+                     double wanted_speed) noexcept;
   void StepWithdraw(const OperatorInput& input) noexcept;
   /** How fast the part, or the hand that holds it, moves as far as the person can tell [m/s]. */
   [[nodiscard]] const Vec3& MotionOf(const OperatorInput& input) const noexcept;
@@ -266,6 +291,16 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void StartSearch(const Vec3& d, double travel, bool is_by_eye) noexcept;
   /** Moves the reference on: what to do next. */
   void Decide(const OperatorInput& input) noexcept;
+  /** Does what the present phase consists of, and begins the next one when it is over. */
+  void StepPhase(const OperatorInput& input) noexcept;
+  void StepReach() noexcept;
+  void StepGrasp(const OperatorInput& input) noexcept;
+  void StepApproach(const OperatorInput& input) noexcept;
+  void BeginPhase(Phase phase) noexcept;
+  /** Opens the hand. */
+  void BeginRelease() noexcept;
+  /** Lets the arm go slack: the reference comes to the hand. */
+  void Slacken() noexcept;
   /** How far before the hand the reference goes, to press as hard as it wants to [m]. */
   [[nodiscard]] double LeadOf(const OperatorInput& input) const noexcept;
   void LearnLoad(const spatial::Wrench& F_H_W) noexcept;

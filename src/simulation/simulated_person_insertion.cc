@@ -72,98 +72,138 @@ double SimulatedPerson::HandTravel() const noexcept {
              : TravelOf(X_WH_);
 }
 
-void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
-  const Vec3 d = OutwardOfWay();
-  const double hand_travel = HandTravel();
+bool SimulatedPerson::EndInsertion(const OperatorInput& input,
+                                   const Insertion& insertion) noexcept {
   if (input.hears_seated) {
-    phase_ = Phase::kSettle;
-    phase_time_s_ = 0;
-    return;
+    BeginPhase(Phase::kSettle);
+    return true;
   }
-  const double seen_travel = SeenTravel(input);
-  if (input.sees_part && seen_travel <= task_.turn_back) {
-    phase_ = Phase::kRest;
-    phase_time_s_ = 0;
-    return;
+  if (input.sees_part && insertion.seen_travel <= task_.turn_back) {
+    BeginPhase(Phase::kRest);
+    return true;
   }
-  if (phase_time_s_ > CalcPatience()) {
-    if (task_.starts_on_way) {
-      LeaveThere();
-    } else if (task_.way != nullptr) {
-      BeginWithdraw(hand_travel, options_.first_push);  // It has to turn its way out again.
-    } else {
-      PlanReturn();
-    }
-    return;
+  if (phase_time_s_ <= CalcPatience()) {
+    return false;
   }
+  if (task_.starts_on_way) {
+    LeaveThere();
+  } else if (task_.way != nullptr) {
+    BeginWithdraw(insertion.hand_travel, options_.first_push);  // It has to turn its way out again.
+  } else {
+    PlanReturn();
+  }
+  return true;
+}
+
+void SimulatedPerson::ChooseSenses(const OperatorInput& input,
+                                   Insertion* insertion) const noexcept {
   // Where no mate guides it and it has missed once, it looks, lays the part on with a light touch,
   // and gives way inside.
   const bool has_more_to_meet = task_.is_guided_by_planes || task_.way != nullptr;
-  const bool is_by_eye = input.sees_part && (!is_guided_ || has_more_to_meet);
+  insertion->is_by_eye = input.sees_part && (!is_guided_ || has_more_to_meet);
   // What would wedge in its hole is pressed lightly, too.
-  const bool is_by_touch = is_guided_ && task_.has_play;
-  const bool is_led_by_hole = is_by_touch && options_.gives_way;
-  const bool is_careful = (is_by_eye && (search_count_ > 0 || HasSlotToFind())) || is_led_by_hole;
-  const bool is_watched = is_by_eye || (is_at_device_ && input.sees_part);
-  const double travel = is_watched ? seen_travel : hand_travel;
-  const bool is_inside = (is_by_eye || is_by_touch) && travel < task_.engage_distance - kLeadIn;
+  insertion->is_by_touch = is_guided_ && task_.has_play;
+  insertion->is_led_by_hole = insertion->is_by_touch && options_.gives_way;
+  insertion->is_careful =
+      (insertion->is_by_eye && (search_count_ > 0 || HasSlotToFind())) || insertion->is_led_by_hole;
+  const bool is_watched = insertion->is_by_eye || (is_at_device_ && input.sees_part);
+  insertion->travel = is_watched ? insertion->seen_travel : insertion->hand_travel;
+  insertion->is_inside = (insertion->is_by_eye || insertion->is_by_touch) &&
+                         insertion->travel < task_.engage_distance - kLeadIn;
+}
+
+void SimulatedPerson::BackOff(const Insertion& insertion) noexcept {
+  nearest_travel_ = std::numeric_limits<double>::infinity();
+  since_nearer_s_ = 0;
+  travel_ += options_.insert_speed * dt_;
+  is_backing_off_ = travel_ < back_off_to_ && insertion.hand_travel < back_off_to_ + 3 * kBackOff;
+  look_time_s_ = kLookTime;
+  stuck_time_s_ = 0;
+  push_ = options_.first_push;
+}
+
+bool SimulatedPerson::AdvanceTravel(const OperatorInput& input, const Insertion& insertion,
+                                    double speed, double wanted_speed) noexcept {
+  // The mate has it on the axis: the hand comes there, too, before it goes in.
+  const bool is_waiting =
+      insertion.is_led_by_hole && !insertion.is_inside && FeelsAside(input, insertion.d);
+  // The arm's spring turns the lead into a force.
+  travel_ = std::max(travel_ - (is_waiting ? 0 : wanted_speed * dt_),
+                     insertion.hand_travel - LeadOf(input));
+  // The device may give way where the part does not: the eye tells.
+  const double stretch =
+      insertion.seen_travel - insertion.hand_travel - grip_offset_W_.dot(insertion.d);
+  const bool is_left_behind = input.sees_part && stretch > options_.most_stretch;
+  travel_ = is_left_behind
+                ? std::max(travel_, insertion.hand_travel + stretch - options_.most_stretch)
+                : travel_;
+  // It follows a hand that is pushed back, but not one that leaves.
+  travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
+  since_nearer_s_ = task_.way == nullptr || IsNearer(insertion.travel) ? 0 : since_nearer_s_ + dt_;
+  const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : speed >= kStillSpeed;
+  return !is_waiting &&
+         (is_left_behind || (!is_coming && (insertion.is_careful || IsPressing(input))));
+}
+
+void SimulatedPerson::PressOn(const OperatorInput& input, const Insertion& insertion) noexcept {
+  const double speed = -CalcOutwardSpeed(input);
+  const double wanted_speed = insertion.is_careful ? kCarefulSpeed : options_.insert_speed;
+  const bool is_slow = speed < kSlowShare * wanted_speed;
+  const bool is_careful_inside = insertion.is_careful && insertion.is_inside;
+  AdjustPush(CalcAddedForce(input), speed, wanted_speed,
+             insertion.is_careful && !insertion.is_inside);
+  push_ = insertion.is_careful ? std::min(push_, options_.careful_push) : push_;
+  if (task_.way != nullptr && insertion.is_by_eye && insertion.travel < task_.engage_distance) {
+    FollowWayByEye(input, insertion.d);
+  }
+  if (insertion.is_led_by_hole) {
+    YieldToHole(input, insertion.d);
+  }
+  const bool is_stuck = AdvanceTravel(input, insertion, speed, wanted_speed);
+  stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
+  if (input.sees_part && insertion.seen_travel < -kStandOff) {
+    // Beyond its place, where nothing stops it: it was missed.
+    StartSearch(insertion.d, insertion.travel, false);
+    back_off_to_ = task_.engage_distance + kStandOff;
+    return;
+  }
+  const double most_stuck = is_careful_inside && !IsLedByEye() ? kRockingTime : kStuckBeforeSearch;
+  if (since_nearer_s_ > (is_guided_ ? kRockingTime : kNotNearer) || stuck_time_s_ > most_stuck) {
+    StartSearch(insertion.d, insertion.travel, insertion.is_by_eye);
+    return;
+  }
+  if (!is_careful_inside) {
+    return;
+  }
+  if (!insertion.is_led_by_hole && (task_.way == nullptr || is_slow) && FeelsTouch(input)) {
+    YieldToTouch(
+        insertion.d);  // On a way that turns, what comes behind the hand meets nothing yet.
+  }
+  if (!insertion.is_by_touch || stuck_time_s_ > kGivesWayFirst) {
+    Rock(insertion.d, is_slow);
+  }
+}
+
+void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
+  Insertion insertion;
+  insertion.d = OutwardOfWay();
+  insertion.hand_travel = HandTravel();
+  insertion.seen_travel = SeenTravel(input);
+  if (EndInsertion(input, insertion)) {
+    return;
+  }
+  ChooseSenses(input, &insertion);
+  const bool may_look =
+      (insertion.is_careful || task_.way != nullptr) && insertion.is_by_eye && look_time_s_ > 0;
   if (is_backing_off_) {
-    nearest_travel_ = std::numeric_limits<double>::infinity();
-    since_nearer_s_ = 0;
-    travel_ += options_.insert_speed * dt_;
-    is_backing_off_ = travel < back_off_to_ && hand_travel < back_off_to_ + 3 * kBackOff;
-    look_time_s_ = kLookTime;
-    stuck_time_s_ = 0;
-    push_ = options_.first_push;
-  } else if ((is_careful || task_.way != nullptr) && is_by_eye && look_time_s_ > 0) {
+    BackOff(insertion);
+  } else if (may_look) {
     look_time_s_ -= dt_;
     if (look_time_s_ <= 0) {
       LookClosely(input);
     }
   } else {
-    // The arm's spring turns the lead into a force.
-    const double speed = -CalcOutwardSpeed(input);
-    const double wanted_speed = is_careful ? kCarefulSpeed : options_.insert_speed;
-    const bool is_slow = speed < kSlowShare * wanted_speed;
-    AdjustPush(CalcAddedForce(input), speed, wanted_speed, is_careful && !is_inside);
-    push_ = is_careful ? std::min(push_, options_.careful_push) : push_;
-    if (task_.way != nullptr && is_by_eye && travel < task_.engage_distance) {
-      FollowWayByEye(input, d);
-    }
-    const double lead = LeadOf(input);
-    if (is_led_by_hole) {
-      YieldToHole(input, d);
-    }
-    // The mate has it on the axis: the hand comes there, too, before it goes in.
-    const bool is_waiting = is_led_by_hole && !is_inside && FeelsAside(input, d);
-    travel_ = std::max(travel_ - (is_waiting ? 0 : wanted_speed * dt_), hand_travel - lead);
-    // The device may give way where the part does not: the eye tells.
-    const double stretch = seen_travel - hand_travel - grip_offset_W_.dot(d);
-    const bool is_left_behind = input.sees_part && stretch > options_.most_stretch;
-    travel_ =
-        is_left_behind ? std::max(travel_, hand_travel + stretch - options_.most_stretch) : travel_;
-    // It follows a hand that is pushed back, but not one that leaves.
-    travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
-    since_nearer_s_ = task_.way == nullptr || IsNearer(travel) ? 0 : since_nearer_s_ + dt_;
-    const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : speed >= kStillSpeed;
-    const bool is_stuck =
-        !is_waiting && (is_left_behind || (!is_coming && (is_careful || IsPressing(input))));
-    stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
-    if (input.sees_part && seen_travel < -kStandOff) {
-      StartSearch(d, travel, false);  // Beyond its place, where nothing stops it: it was missed.
-      back_off_to_ = task_.engage_distance + kStandOff;
-    } else if (since_nearer_s_ > (is_guided_ ? kRockingTime : kNotNearer) ||
-               stuck_time_s_ >
-                   (is_careful && is_inside && !IsLedByEye() ? kRockingTime : kStuckBeforeSearch)) {
-      StartSearch(d, travel, is_by_eye);
-    } else if (is_careful && is_inside) {
-      if (!is_led_by_hole && (task_.way == nullptr || is_slow) && FeelsTouch(input)) {
-        YieldToTouch(d);  // On a way that turns, what comes behind the hand meets nothing yet.
-      }
-      if (!is_by_touch || stuck_time_s_ > kGivesWayFirst) {
-        Rock(d, is_slow);
-      }
-    }
+    PressOn(input, insertion);
   }
   const spatial::Pose X_WG = WayAt(travel_);
   p_ref_ = X_WG.p() + OffsetBesideWay();
@@ -220,8 +260,7 @@ void SimulatedPerson::AdjustPush(double resistance, double speed, double wanted_
 }
 
 void SimulatedPerson::BeginWithdraw(double travel, double push) noexcept {
-  phase_ = Phase::kWithdraw;
-  phase_time_s_ = 0;
+  BeginPhase(Phase::kWithdraw);
   push_ = push;
   travel_ = travel;
   stuck_time_s_ = 0;
@@ -445,8 +484,7 @@ double SimulatedPerson::LeadOf(const OperatorInput& input) const noexcept {
 
 void SimulatedPerson::LeaveThere() noexcept {
   gave_up_ = true;
-  phase_ = Phase::kSettle;
-  phase_time_s_ = 0;
+  BeginPhase(Phase::kSettle);
 }
 
 void SimulatedPerson::BeginOnWay(const OperatorInput& input) noexcept {
@@ -457,8 +495,7 @@ void SimulatedPerson::BeginOnWay(const OperatorInput& input) noexcept {
 }
 
 void SimulatedPerson::BeginInsert() noexcept {
-  phase_ = Phase::kInsert;
-  phase_time_s_ = 0;
+  BeginPhase(Phase::kInsert);
   push_ = options_.first_push;
   stuck_time_s_ = 0;
   search_offset_.setZero();
