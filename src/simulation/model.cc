@@ -307,134 +307,184 @@ Result<PartShapes> MakeMissingBoxes(const Product& product, const PartShapes& sh
   return boxes;
 }
 
-/** Compiles a product; parts without a shape are pending.
- @param with_screws  Gets the product with mates for the pairs that come apart along a screw that no
- mate describes; where there are any, the result is null. Null: they are not asked for. */
-Result<std::shared_ptr<const Model>> CompileWithShapes(
-    const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
-    const CompileOptions& options, std::shared_ptr<const product::Product>* with_screws,
-    Diagnostics* diagnostics) {
-  const auto report = [&options](const std::string& stage, double fraction) {
-    if (options.progress) {
-      options.progress(stage, fraction);
-    }
-  };
-  const auto cancelled = [&product] {
-    return Fail(ErrorCode::kCancelled, "preparing the product was cancelled", product->source);
-  };
-  auto model = std::make_shared<Model>();
-  model->product = product;
-  model->seed = options.seed;
-  model->pairs = options.pairs;
-  const auto boxes = MakeMissingBoxes(*product, shapes);
+void ReportStage(const CompileOptions& options, const std::string& stage, double fraction) {
+  if (options.progress) {
+    options.progress(stage, fraction);
+  }
+}
+
+/** Fails where the caller has asked to stop. */
+Result<void> CheckNotStopped(const CompileOptions& options, const Product& product) {
+  if (options.shape.stop.stop_requested()) {
+    return Fail(ErrorCode::kCancelled, "preparing the product was cancelled", product.source);
+  }
+  return {};
+}
+
+/** Makes a body of each occurrence; one whose part has no shape yet is a box, and pending. */
+Result<void> MakeBodies(const PartShapes& shapes, Model* model) {
+  const Product& product = *model->product;
+  const auto boxes = MakeMissingBoxes(product, shapes);
   if (!boxes) {
     return Unexpected(boxes.error());
   }
-  for (const product::Occurrence& occurrence : product->occurrences) {
+  for (const product::Occurrence& occurrence : product.occurrences) {
     const std::size_t part = occurrence.part.index();
     model->bodies.push_back({occurrence.id,
                              shapes[part] != nullptr ? shapes[part] : (*boxes)[part],
-                             MakeMass(product->part_of(occurrence.id)),
+                             MakeMass(product.part_of(occurrence.id)),
                              occurrence.X_WB,
                              occurrence.X_WB,
                              nullptr,
                              shapes[part] != nullptr ? BodyRole::kPart : BodyRole::kPending,
                              {}});
   }
-  GiveRoles(model.get());
+  GiveRoles(model);
+  return {};
+}
 
-  report("mates", 0);
-  std::map<std::tuple<product::PartId, product::FeatureId, product::FeatureId>,
-           std::shared_ptr<const haptics::MateFaces>>
-      faces_of;
-  const auto faces = [&](const product::Connector& connector) {
-    const product::PartId part = product->occurrences[connector.occurrence.index()].part;
-    auto& entry = faces_of[{part, connector.feature, connector.opposite}];
+/** Makes the faces of mates, each set once for all occurrences of a part. */
+class MateFaceSets {
+ public:
+  explicit MateFaceSets(const Product& product) : product_(product) {}
+
+  std::shared_ptr<const haptics::MateFaces> Make(const product::Connector& connector) {
+    const product::PartId part = product_.occurrences[connector.occurrence.index()].part;
+    auto& entry = made_[{part, connector.feature, connector.opposite}];
     if (entry == nullptr) {
       entry = std::make_shared<haptics::MateFaces>(
-          CollectMateFaces(product->parts[part.index()], FacesOf(*product, connector)));
+          CollectMateFaces(product_.parts[part.index()], FacesOf(product_, connector)));
     }
     return entry;
-  };
-  model->mates_of.resize(product->occurrences.size());
-  const std::vector<mates::FastenerKind> fasteners = mates::ClassifyOccurrences(*product);
-  const std::vector<mates::ThreadJoint> joints = mates::FindThreadJoints(*product);
+  }
+
+ private:
+  const Product& product_;
+  std::map<std::tuple<product::PartId, product::FeatureId, product::FeatureId>,
+           std::shared_ptr<const haptics::MateFaces>>
+      made_;
+};
+
+/** Makes a mate with the faces that take part in it; those of threads, and of nuts that lock, are
+ more than its connectors have. */
+ModelMate MakeMate(const Product& product, const product::Mate& mate, bool is_nut,
+                   MateFaceSets* faces) {
+  ModelMate made;
+  made.id = mate.id;
+  made.faces_a = faces->Make(mate.a);
+  made.faces_b = faces->Make(mate.b);
+  const std::vector<product::FaceId> locking =
+      is_nut ? ListLockingFaces(product, mate) : std::vector<product::FaceId>();
+  if (!locking.empty()) {
+    std::vector<product::FaceId> all = FacesOf(product, mate.a);
+    all.insert(all.end(), locking.begin(), locking.end());
+    made.faces_a = std::make_shared<haptics::MateFaces>(
+        CollectMateFaces(product.part_of(mate.a.occurrence), all));
+  }
+  if (IsDrawnThread(mate) || !locking.empty()) {
+    made.faces_a = WidenForThread(product, mate, mate.a, *made.faces_a);
+    made.faces_b = WidenForThread(product, mate, mate.b, *made.faces_b);
+  }
+  return made;
+}
+
+void MakeMates(Model* model) {
+  const Product& product = *model->product;
+  MateFaceSets faces(product);
+  model->mates_of.resize(product.occurrences.size());
+  const std::vector<mates::FastenerKind> fasteners = mates::ClassifyOccurrences(product);
+  const std::vector<mates::ThreadJoint> joints = mates::FindThreadJoints(product);
   auto next_joint = joints.begin();
-  for (const product::Mate& mate : product->mates) {
-    ModelMate compiled;
-    compiled.id = mate.id;
-    compiled.faces_a = faces(mate.a);
-    compiled.faces_b = faces(mate.b);
+  for (const product::Mate& mate : product.mates) {
     const bool is_nut = mate.fit && mate.fit->kind == product::FitKind::kThread &&
                         fasteners[mate.a.occurrence.index()] == mates::FastenerKind::kNut;
-    const std::vector<product::FaceId> locking =
-        is_nut ? ListLockingFaces(*product, mate) : std::vector<product::FaceId>();
-    if (!locking.empty()) {
-      std::vector<product::FaceId> all = FacesOf(*product, mate.a);
-      all.insert(all.end(), locking.begin(), locking.end());
-      compiled.faces_a = std::make_shared<haptics::MateFaces>(
-          CollectMateFaces(product->part_of(mate.a.occurrence), all));
-    }
-    if (IsDrawnThread(mate) || !locking.empty()) {
-      compiled.faces_a = WidenForThread(*product, mate, mate.a, *compiled.faces_a);
-      compiled.faces_b = WidenForThread(*product, mate, mate.b, *compiled.faces_b);
-    }
+    ModelMate made = MakeMate(product, mate, is_nut, &faces);
     if (next_joint != joints.end() && next_joint->mate == mate.id) {
-      compiled.thread = std::make_shared<const mates::ThreadJoint>(*next_joint++);
+      made.thread = std::make_shared<const mates::ThreadJoint>(*next_joint++);
     }
-    model->mates.push_back(std::move(compiled));
-    if (!mates::IsContradicted(*product, mate)) {
+    model->mates.push_back(std::move(made));
+    if (!mates::IsContradicted(product, mate)) {
       model->mates_of[mate.a.occurrence.index()].push_back(mate.id);
       model->mates_of[mate.b.occurrence.index()].push_back(mate.id);
     }
   }
+}
 
+/** Finds the part that is named as the base; an invalid id where none is named. */
+Result<OccurrenceId> FindNamedBase(const CompileOptions& options, const Model& model) {
+  if (options.base.empty()) {
+    return OccurrenceId();
+  }
+  const auto base = mates::FindOccurrence(*model.product, options.base);
+  if (!base) {
+    return Unexpected(base.error());
+  }
+  if (model.bodies[base->index()].role != BodyRole::kPart) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("{} is no part of the product, and cannot be its base",
+                            model.product->occurrences[base->index()].path),
+                model.product->source, "name another part as the base");
+  }
+  return *base;
+}
+
+Result<void> FindOrder(const CompileOptions& options, Model* model) {
   contact::Scene scene;
   SequenceInput input = MakeSequenceInput(*model, &scene);
   input.way_looks = options.way_looks;
-  if (!options.base.empty()) {
-    const auto base = mates::FindOccurrence(*product, options.base);
-    if (!base) {
-      return Unexpected(base.error());
-    }
-    if (model->bodies[base->index()].role != BodyRole::kPart) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("{} is no part of the product, and cannot be its base",
-                              product->occurrences[base->index()].path),
-                  product->source, "name another part as the base");
-    }
-    input.base = *base;
+  const auto base = FindNamedBase(options, *model);
+  if (!base) {
+    return Unexpected(base.error());
   }
-  input.progress = [&report](double fraction) { report("order of assembly", fraction); };
+  input.base = *base;
+  input.progress = [&options](double fraction) {
+    ReportStage(options, "order of assembly", fraction);
+  };
   input.stop = options.shape.stop;
   model->sequence = PlanSequence(input);
-  if (input.stop.stop_requested()) {
-    return cancelled();
+  return CheckNotStopped(options, *model->product);
+}
+
+/** Makes the bodies and mates of a product, and finds its order of assembly; parts without a shape
+ are pending. */
+Result<std::shared_ptr<Model>> MakeOrderedModel(
+    const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
+    const CompileOptions& options) {
+  auto model = std::make_shared<Model>();
+  model->product = product;
+  model->seed = options.seed;
+  model->pairs = options.pairs;
+  if (const auto made = MakeBodies(shapes, model.get()); !made) {
+    return Unexpected(made.error());
   }
-  if (with_screws != nullptr && !model->sequence.screws.empty()) {
-    *with_screws = AddScrewMates(*product, model->sequence.screws);
-    if (*with_screws != nullptr) {
-      return std::shared_ptr<const Model>();
-    }
+  ReportStage(options, "mates", 0);
+  MakeMates(model.get());
+  if (const auto found = FindOrder(options, model.get()); !found) {
+    return Unexpected(found.error());
   }
-  report("layout", 0);
-  if (const auto laid_out = LayOutParts(model.get()); !laid_out) {
-    return Unexpected(laid_out.error());
+  return model;
+}
+
+/** Adds what follows from the order: where parts lie on the table, presses, fits and reliefs. */
+Result<void> CompleteModel(const CompileOptions& options, Model* model, Diagnostics* diagnostics) {
+  ReportStage(options, "layout", 0);
+  if (auto laid_out = LayOutParts(model); !laid_out) {
+    return laid_out;
   }
-  if (const auto ordered = PutInOrder(options, model.get()); !ordered) {
-    return Unexpected(ordered.error());
+  if (auto ordered = PutInOrder(options, model); !ordered) {
+    return ordered;
   }
-  model->presses = ListAllPresses(*product, model->sequence);
-  model->deformables = ListDeformables(*product, model->sequence, model->presses);
-  MakeFits(model.get(), diagnostics);
-  GiveActualFaces(model.get(), diagnostics);
-  RelieveWays(input.stop, model.get(), diagnostics);
-  if (input.stop.stop_requested()) {
-    return cancelled();
+  model->presses = ListAllPresses(*model->product, model->sequence);
+  model->deformables = ListDeformables(*model->product, model->sequence, model->presses);
+  MakeFits(model, diagnostics);
+  GiveActualFaces(model, diagnostics);
+  RelieveWays(options.shape.stop, model, diagnostics);
+  if (auto running = CheckNotStopped(options, *model->product); !running) {
+    return running;
   }
   ReportModelLimits(*model, diagnostics);
-  report("ready", 1);
-  return std::shared_ptr<const Model>(std::move(model));
+  ReportStage(options, "ready", 1);
+  return {};
 }
 
 /** Compiles the parts whose shapes are there, as well as is possible soon: without ways that turn,
@@ -448,14 +498,16 @@ Result<std::shared_ptr<const Model>> CompileFirst(
   first.pairs = options.pairs;
   first.shape.stop = options.shape.stop;
   first.way_looks = 0;
-  Diagnostics unheeded;
-  auto compiled = CompileWithShapes(product, shapes, first, nullptr, &unheeded);
-  if (!compiled) {
-    return compiled;
+  auto model = MakeOrderedModel(product, shapes, first);
+  if (!model) {
+    return Unexpected(model.error());
   }
-  auto model = std::make_shared<Model>(**compiled);
-  model->sequence.gaps.clear();
-  return std::shared_ptr<const Model>(std::move(model));
+  Diagnostics unheeded;
+  if (const auto completed = CompleteModel(first, model->get(), &unheeded); !completed) {
+    return Unexpected(completed.error());
+  }
+  (*model)->sequence.gaps.clear();
+  return std::shared_ptr<const Model>(*std::move(model));
 }
 
 /** Builds the shapes of all parts: first those with which somebody can begin, where the caller
@@ -464,9 +516,7 @@ Result<void> BuildAllShapes(const std::shared_ptr<const product::Product>& produ
                             const CompileOptions& options, PartShapes* shapes) {
   ShapesControl control{options.shape, options.shape_cache.get(), options.threads, nullptr};
   control.progress = [&options](double fraction) {
-    if (options.progress) {
-      options.progress("contact shapes", fraction);
-    }
+    ReportStage(options, "contact shapes", fraction);
   };
   const FirstParts first = options.on_first_parts ? ChooseFirstParts(*product) : FirstParts();
   if (!first.parts.empty()) {
@@ -495,12 +545,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (product->occurrences.empty()) {
     return Fail(ErrorCode::kInvalid, "the product has no parts", product->source);
   }
-  const auto report = [&options](const std::string& stage, double fraction) {
-    if (options.progress) {
-      options.progress(stage, fraction);
-    }
-  };
-  report("contact shapes", 0);
+  ReportStage(options, "contact shapes", 0);
   PartShapes shapes(product->parts.size());
   if (const auto built = BuildAllShapes(product, options, &shapes); !built) {
     return Unexpected(built.error());
@@ -510,14 +555,20 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (problem) {
     diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
-  const std::shared_ptr<const product::Product> drawn = std::move(product);
-  std::shared_ptr<const product::Product> with_screws;
-  auto model = CompileWithShapes(drawn, shapes, options, &with_screws, diagnostics);
-  if (with_screws == nullptr) {
-    return model;
+  auto model = MakeOrderedModel(product, shapes, options);
+  if (model && !(*model)->sequence.screws.empty()) {
+    // What was found to be a screw is one from now on, and the order is made with it.
+    if (const auto with_screws = AddScrewMates(*product, (*model)->sequence.screws)) {
+      model = MakeOrderedModel(with_screws, shapes, options);
+    }
   }
-  // What was found to be a screw is one from now on, and the order is made with it.
-  return CompileWithShapes(with_screws, shapes, options, nullptr, diagnostics);
+  if (!model) {
+    return Unexpected(model.error());
+  }
+  if (const auto completed = CompleteModel(options, model->get(), diagnostics); !completed) {
+    return Unexpected(completed.error());
+  }
+  return std::shared_ptr<const Model>(*std::move(model));
 }
 
 std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
