@@ -569,60 +569,124 @@ void BodyQuery::MarkKnownFar(const BoundView& bounds, bool are_lists_screened,
   }
 }
 
+void BodyQuery::FindHits(std::uint32_t first, ShellQuery* query) noexcept {
+  const auto& [sampled, shell, field, R_back, deep] = query->samples;
+  HitBuffer& hits = query->hits;
+  hits.hits = work_->hits.data();
+  hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
+  const std::uint32_t leaf_count = query->tested.count;
+  const std::uint32_t most = query->body.threads.is_deep ? kBesideThread : 8;
+  const LeafChoice all{work_->leaves.data() + first, leaf_count, most, 1};
+  query->tested = TestLeaves(sampled, shell, field, query->X_FS, all, query->bounds, &hits);
+  const bool is_thinned = query->tested.points < most || query->tested.stride > 1;
+  work_->stats.points_tested += hits.points_tested;
+  work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
+  const bool are_lists_screened =
+      !query->has_ignored && sampled.offsets == nullptr && field.offsets == nullptr;
+  if (query->remembers) {
+    MarkKnownFar(query->bounds, are_lists_screened, &hits);
+  }
+  query->stride = CalcStride({hits.hits, hits.count}, leaf_count, are_lists_screened, field);
+  work_->stats.is_truncated =
+      work_->stats.is_truncated || is_thinned || hits.is_truncated || query->stride > 1;
+  query->sparsity =
+      8.0F * static_cast<float>(query->tested.stride) / static_cast<float>(query->tested.points);
+}
+
+template <bool kIsReverse>
+bool BodyQuery::AddAtThread(const ShellQuery& query, const Helix& thread, const Hit& hit,
+                            const Sample& sample, RawContact* contact) noexcept {
+  const HelixPoint place = Locate(thread, sample.p_F);
+  if (!IsInThread(thread, place, margin_) &&
+      !IsNearestThread(*query.samples.field.shape, thread, sample.p_F)) {
+    return false;
+  }
+  contact->point = kFixedPoint;
+  contact->sparsity = query.sparsity;
+  AddRefined<kIsReverse>(query.samples, hit, sample, RefineAtThread(thread, place, margin_),
+                         contact);
+  return true;
+}
+
+void BodyQuery::Remember(const ShellQuery& query, const Hit& hit, const Refined& r,
+                         double limit) noexcept {
+  if (!query.remembers || (hit.list == kNoList && !IsOfList(hit))) {
+    return;
+  }
+  const double least = r.is_valid ? r.distance : limit;
+  const ExactTable& exact = query.samples.field.shape->exact;
+  const double unsure = 2 * exact.most_deviation + kListsAgree +
+                        (r.is_valid && r.is_rough ? exact.deviation[r.face] : 0);
+  work_->memory->SetFar(query.bounds, hit.point, least - unsure);
+}
+
+template <bool kIsReverse>
+void BodyQuery::AddHit(const ShellQuery& query, const Hit& hit, const Sample& sample,
+                       const FaceFilter& filter, bool is_refined, RawContact* contact) noexcept {
+  const Placed& field = query.samples.field;
+  if (IsScreened(query.samples.placed, field, hit, filter)) {
+    contact->sparsity = query.sparsity;
+    if (filter.Drops(hit.face) || AddScreened<kIsReverse>(query.samples, hit, sample, contact)) {
+      return;
+    }
+  } else if (!is_refined) {
+    ++work_->stats.points_dropped;
+    return;
+  } else if (IsAllowed<kIsReverse>(query.samples, hit, sample)) {
+    return;
+  }
+  const Refined r = RefineActual(*field.shape, field.offsets, sample.p_F, hit, filter);
+  Remember(query, hit, r, filter.limit);
+  // So deep inside, the field knows no face: for a sample of faces that something else answers
+  // for, what it answers for may be all around, as the thread of a screw around the rim of its
+  // core hole.
+  const bool is_answered_for = r.face == kNoFace && filter.bits != 0;
+  if (!is_answered_for) {
+    contact->point = hit.point;
+    contact->sparsity = query.sparsity * static_cast<float>(query.stride);
+    AddRefined<kIsReverse>(query.samples, hit, sample, r, contact);
+  }
+}
+
 template <bool kIsReverse>
 void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed& field,
                         bool has_ignored, const NearBody& body) noexcept {
   const std::size_t side = kIsReverse ? 1 : 0;
-  const std::uint32_t leaf_count = body.count[side];
-  if (is_stopped_ || leaf_count == 0) {
+  if (is_stopped_ || body.count[side] == 0) {
     return;
   }
   const RelativePose X(field, sampled);
-  HitBuffer hits;
-  hits.hits = work_->hits.data();
-  hits.capacity = static_cast<std::uint32_t>(work_->hits.size());
-  const std::uint32_t most = body.threads.is_deep ? kBesideThread : 8;
-  const LeafChoice all{work_->leaves.data() + body.first[side], leaf_count, most, 1};
-  const LeafChoice choice = TestLeaves(sampled, shell, field, X, all, body.bounds[side], &hits);
-  const bool is_thinned = choice.points < most || choice.stride > 1;
-  work_->stats.points_tested += hits.points_tested;
-  work_->stats.points_dropped += is_thinned ? most * leaf_count - hits.points_tested : 0;
-  const bool are_lists_screened =
-      !has_ignored && sampled.offsets == nullptr && field.offsets == nullptr;
   const BoundView& bounds = body.bounds[side];
   // What is left out of the other part, or stands for its thread, is no bound of its distance.
   const bool remembers = bounds.bounds != nullptr && !has_ignored && body.threads.held == nullptr;
-  if (remembers) {
-    MarkKnownFar(bounds, are_lists_screened, &hits);
-  }
-  const std::uint32_t stride =
-      CalcStride({hits.hits, hits.count}, leaf_count, are_lists_screened, field);
-  work_->stats.is_truncated =
-      work_->stats.is_truncated || is_thinned || hits.is_truncated || stride > 1;
+  ShellQuery query{{sampled, shell, field, -X.R.transpose(), -0.5 * sampled.shape->spacing},
+                   X,
+                   body,
+                   bounds,
+                   has_ignored,
+                   remembers};
+  query.tested.count = body.count[side];
+  FindHits(body.first[side], &query);
 
   const std::vector<std::uint8_t>& own_mask = kIsReverse ? work_->scene_mask : work_->held_mask;
   const std::vector<std::uint8_t>& other_mask = kIsReverse ? work_->held_mask : work_->scene_mask;
-  const SampledShell all_samples{sampled, shell, field, -X.R.transpose(),
-                                 -0.5 * sampled.shape->spacing};
-  const float sparsity =
-      8.0F * static_cast<float>(choice.stride) / static_cast<float>(choice.points);
+  const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
+  const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
+  const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
+  const HitChoice tested(shell, query.tested, 1);
+  const HitChoice refined(shell, query.tested, query.stride);
   RawContact contact;
   contact.body = body.body.value();
   contact.is_reverse = kIsReverse;
   FaceFilter filter;
   filter.limit = margin_ + (remembers ? kLookedBeyond : 0);
   filter.allows_rough = true;
-  const Helix* own_thread = kIsReverse ? body.threads.scene : body.threads.held;
-  const Helix* other_thread = kIsReverse ? body.threads.held : body.threads.scene;
-  const ThreadSamples left_out = SamplesOf(*sampled.shape, own_thread, body.threads.is_deep);
-  const HitChoice tested(shell, choice, 1);
-  const HitChoice refined(shell, choice, stride);
-  const std::uint32_t step = Stride(hits.count);
+  const std::uint32_t step = Stride(query.hits.count);
   std::uint32_t at = 0;
-  for (std::uint32_t i = 0; i < hits.count && !is_stopped_; ++i) {
-    const Hit& hit = hits.hits[at];
+  for (std::uint32_t i = 0; i < query.hits.count && !is_stopped_; ++i) {
+    const Hit& hit = query.hits.hits[at];
     at += step;
-    at -= at >= hits.count ? hits.count : 0;
+    at -= at >= query.hits.count ? query.hits.count : 0;
     // Some are of leaves that were tested whole, to know how far they are; on its thread a part is
     // met by its edges.
     if (hit.face == kKnownFar || !tested.Has(hit.point) ||
@@ -635,44 +699,10 @@ void BodyQuery::Samples(const Placed& sampled, const Shell& shell, const Placed&
       filter.mask = other_mask.data();
       filter.bits = BitsOf(sample.faces, own_mask);
     }
-    if (other_thread != nullptr) {
-      const HelixPoint place = Locate(*other_thread, sample.p_F);
-      if (IsInThread(*other_thread, place, margin_) ||
-          IsNearestThread(*field.shape, *other_thread, sample.p_F)) {
-        contact.point = kFixedPoint;
-        contact.sparsity = sparsity;
-        AddRefined<kIsReverse>(all_samples, hit, sample,
-                               RefineAtThread(*other_thread, place, margin_), &contact);
-        continue;
-      }
-    }
-    if (IsScreened(sampled, field, hit, filter)) {
-      contact.sparsity = sparsity;
-      if (filter.Drops(hit.face) || AddScreened<kIsReverse>(all_samples, hit, sample, &contact)) {
-        continue;
-      }
-    } else if (!refined.Has(hit.point)) {
-      ++work_->stats.points_dropped;
-      continue;
-    } else if (IsAllowed<kIsReverse>(all_samples, hit, sample)) {
-      continue;
-    }
-    const Refined r = RefineActual(*field.shape, field.offsets, sample.p_F, hit, filter);
-    if (remembers && (hit.list != kNoList || IsOfList(hit))) {
-      const double least = r.is_valid ? r.distance : filter.limit;
-      const ExactTable& exact = field.shape->exact;
-      const double unsure = 2 * exact.most_deviation + kListsAgree +
-                            (r.is_valid && r.is_rough ? exact.deviation[r.face] : 0);
-      work_->memory->SetFar(bounds, hit.point, least - unsure);
-    }
-    // So deep inside, the field knows no face: for a sample of faces that something else answers
-    // for, what it answers for may be all around, as the thread of a screw around the rim of its
-    // core hole.
-    const bool is_answered_for = r.face == kNoFace && filter.bits != 0;
-    if (!is_answered_for) {
-      contact.point = hit.point;
-      contact.sparsity = sparsity * static_cast<float>(stride);
-      AddRefined<kIsReverse>(all_samples, hit, sample, r, &contact);
+    const bool is_at_thread = other_thread != nullptr &&
+                              AddAtThread<kIsReverse>(query, *other_thread, hit, sample, &contact);
+    if (!is_at_thread) {
+      AddHit<kIsReverse>(query, hit, sample, filter, refined.Has(hit.point), &contact);
     }
   }
 }

@@ -172,6 +172,33 @@ class BodyQuery {
     Vec3 p_F;  ///< Position in the field's frame.
   };
 
+  /** What is known of the samples of a shell near a body before they are looked at one by one. */
+  struct ShellQuery {
+    SampledShell samples;
+    RelativePose X_FS;
+    const NearBody& body;
+    const BoundView& bounds;
+    bool has_ignored;         ///< Faces of the other shape are left out.
+    bool remembers;           ///< Bounds of the distance are kept from query to query.
+    LeafChoice tested{};      ///< Leaves and points of the shell that were tested.
+    HitBuffer hits{};         ///< Samples that may be near.
+    std::uint32_t stride{1};  ///< Of how many hits that are not decided at once one is refined.
+    float sparsity{1};        ///< Samples that each tested one stands for.
+  };
+
+  /** Tests the samples of a shell, and chooses how many of the hits are refined. */
+  void FindHits(std::uint32_t first, ShellQuery* query) noexcept;
+  /** Adds a hit at the thread of the other shape, by the thread's own equation. False where the
+   sample is not there. */
+  template <bool kIsReverse>
+  bool AddAtThread(const ShellQuery& query, const Helix& thread, const Hit& hit,
+                   const Sample& sample, RawContact* contact) noexcept;
+  /** Adds a hit, as it is where single precision decides it, or refined. */
+  template <bool kIsReverse>
+  void AddHit(const ShellQuery& query, const Hit& hit, const Sample& sample,
+              const FaceFilter& filter, bool is_refined, RawContact* contact) noexcept;
+  /** Keeps how far a sample is from the other shape, for the next queries. */
+  void Remember(const ShellQuery& query, const Hit& hit, const Refined& r, double limit) noexcept;
   /** Finds how deep a sample may lie in a face of the other shape [m]. */
   template <bool kIsReverse>
   [[nodiscard]] double CalcAllowance(const SampleFaces& sample, std::uint32_t face) const noexcept;
