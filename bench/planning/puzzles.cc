@@ -49,73 +49,97 @@ void AddNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& X_pare
   }
 }
 
-/** The mesh with each triangle once, and each piece that hangs together turned outward about its
- own centre: OMPL's files have both sides of each triangle, and pieces that do not close. */
-TriangleMesh TurnOutward(const TriangleMesh& mesh) {
-  using Key = std::array<std::int64_t, 3>;
-  constexpr double kSame = 1e-8;  // [m]
-  TriangleMesh out;
-  std::map<Key, std::uint32_t> number;
-  std::vector<std::uint32_t> to;
-  for (const Vec3& v : mesh.vertices) {
-    const Key key{std::llround(v.x() / kSame), std::llround(v.y() / kSame),
-                  std::llround(v.z() / kSame)};
-    const auto [entry, is_new] =
-        number.emplace(key, static_cast<std::uint32_t>(out.vertices.size()));
-    if (is_new) {
-      out.vertices.push_back(v);
+/** Makes a mesh with each triangle once, and each piece that hangs together turned outward about
+ its own centre: OMPL's files have both sides of each triangle, and pieces that do not close. */
+class OutwardMesh {
+ public:
+  explicit OutwardMesh(const TriangleMesh& mesh) {
+    AddTriangles(mesh, MergeVertices(mesh));
+    is_in_piece_.assign(mesh_.triangles.size(), false);
+    for (std::size_t first = 0; first < mesh_.triangles.size(); ++first) {
+      if (!is_in_piece_[first]) {
+        TurnOutward(CollectPiece(first));
+      }
     }
-    to.push_back(entry->second);
   }
-  std::set<std::array<std::uint32_t, 3>> seen;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at_edge;
-  for (const auto& t : mesh.triangles) {
-    const std::array<std::uint32_t, 3> triangle{to[t[0]], to[t[1]], to[t[2]]};
-    auto sorted = triangle;
-    std::sort(sorted.begin(), sorted.end());
-    if (sorted[0] == sorted[1] || sorted[1] == sorted[2] || !seen.insert(sorted).second) {
-      continue;
+
+  [[nodiscard]] TriangleMesh Take() { return std::move(mesh_); }
+
+ private:
+  using Triangle = std::array<std::uint32_t, 3>;
+
+  /** Returns the number that each vertex of a mesh has here. */
+  std::vector<std::uint32_t> MergeVertices(const TriangleMesh& mesh) {
+    constexpr double kSame = 1e-8;  // [m]
+    std::map<std::array<std::int64_t, 3>, std::uint32_t> number;
+    std::vector<std::uint32_t> to;
+    for (const Vec3& v : mesh.vertices) {
+      const auto [entry, is_new] = number.emplace(
+          std::array<std::int64_t, 3>{std::llround(v.x() / kSame), std::llround(v.y() / kSame),
+                                      std::llround(v.z() / kSame)},
+          static_cast<std::uint32_t>(mesh_.vertices.size()));
+      if (is_new) {
+        mesh_.vertices.push_back(v);
+      }
+      to.push_back(entry->second);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      at_edge[std::minmax(triangle[k], triangle[(k + 1) % 3])].push_back(out.triangles.size());
-    }
-    out.triangles.push_back(triangle);
+    return to;
   }
-  std::vector<int> piece(out.triangles.size(), -1);
-  int pieces = 0;
-  for (std::size_t first = 0; first < out.triangles.size(); ++first) {
-    if (piece[first] >= 0) {
-      continue;
+
+  void AddTriangles(const TriangleMesh& mesh, const std::vector<std::uint32_t>& to) {
+    std::set<Triangle> seen;
+    for (const auto& t : mesh.triangles) {
+      const Triangle triangle{to[t[0]], to[t[1]], to[t[2]]};
+      Triangle sorted = triangle;
+      std::sort(sorted.begin(), sorted.end());
+      if (sorted[0] == sorted[1] || sorted[1] == sorted[2] || !seen.insert(sorted).second) {
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        at_edge_[std::minmax(triangle[k], triangle[(k + 1) % 3])].push_back(mesh_.triangles.size());
+      }
+      mesh_.triangles.push_back(triangle);
     }
+  }
+
+  /** Collects what hangs together with a triangle, and turns all of it the way that one looks. */
+  std::vector<std::size_t> CollectPiece(std::size_t first) {
     std::vector<std::size_t> members{first};
-    piece[first] = pieces;
+    is_in_piece_[first] = true;
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const auto t = out.triangles[members[i]];
+      const Triangle t = mesh_.triangles[members[i]];
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-        const auto& around = at_edge[std::minmax(a, b)];
+        const auto& around = at_edge_[std::minmax(a, b)];
         for (const std::size_t other : around) {
-          if (around.size() != 2 || piece[other] >= 0) {
-            continue;
+          if (around.size() == 2 && !is_in_piece_[other]) {
+            AlignAtEdge(a, b, &mesh_.triangles[other]);
+            is_in_piece_[other] = true;
+            members.push_back(other);
           }
-          auto& o = out.triangles[other];
-          for (std::size_t m = 0; m < 3; ++m) {
-            if (o[m] == a && o[(m + 1) % 3] == b) {
-              std::swap(o[0], o[1]);
-              break;
-            }
-          }
-          piece[other] = pieces;
-          members.push_back(other);
         }
       }
     }
+    return members;
+  }
+
+  /** Turns a triangle over where it goes along an edge as its neighbour does. */
+  static void AlignAtEdge(std::uint32_t a, std::uint32_t b, Triangle* triangle) {
+    for (std::size_t m = 0; m < 3; ++m) {
+      if ((*triangle)[m] == a && (*triangle)[(m + 1) % 3] == b) {
+        std::swap((*triangle)[0], (*triangle)[1]);
+        return;
+      }
+    }
+  }
+
+  void TurnOutward(const std::vector<std::size_t>& members) {
     Vec3 centre = Vec3::Zero();
     double volume = 0, area = 0;
     for (const int pass : {0, 1}) {
       for (const std::size_t i : members) {
-        const auto& t = out.triangles[i];
-        const Vec3 &p = out.vertices[t[0]], &q = out.vertices[t[1]], &r = out.vertices[t[2]];
+        const Triangle& t = mesh_.triangles[i];
+        const Vec3 &p = mesh_.vertices[t[0]], &q = mesh_.vertices[t[1]], &r = mesh_.vertices[t[2]];
         const Vec3 n = 0.5 * (q - p).cross(r - p);
         const Vec3 middle = (p + q + r) / 3;
         if (pass == 0) {
@@ -128,13 +152,15 @@ TriangleMesh TurnOutward(const TriangleMesh& mesh) {
     }
     if (volume < 0) {
       for (const std::size_t i : members) {
-        std::swap(out.triangles[i][0], out.triangles[i][1]);
+        std::swap(mesh_.triangles[i][0], mesh_.triangles[i][1]);
       }
     }
-    ++pieces;
   }
-  return out;
-}
+
+  TriangleMesh mesh_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at_edge_;
+  std::vector<bool> is_in_piece_;
+};
 
 Result<TriangleMesh> ReadMesh(const std::filesystem::path& file, double unit) {
   Assimp::Importer importer;
@@ -216,22 +242,77 @@ Result<void> MakeShapes(Puzzle* puzzle, double spacing, double voxel, bool has_s
   return {};
 }
 
-}  // namespace
-
-Result<Puzzle> LoadPuzzle(const std::string& config, double spacing) {
+/** Reads lines of the form "key = value". */
+std::map<std::string, std::string> ReadValues(const std::string& config) {
+  const auto trim = [](std::string s) {
+    s.erase(0, s.find_first_not_of(" \t\r"));
+    s.erase(s.find_last_not_of(" \t\r") + 1);
+    return s;
+  };
   std::ifstream in(config);
   std::map<std::string, std::string> values;
   for (std::string line; std::getline(in, line);) {
     const auto equals = line.find('=');
     if (equals != std::string::npos) {
-      const auto trim = [](std::string s) {
-        s.erase(0, s.find_first_not_of(" \t\r"));
-        s.erase(s.find_last_not_of(" \t\r") + 1);
-        return s;
-      };
       values.emplace(trim(line.substr(0, equals)), trim(line.substr(equals + 1)));
     }
   }
+  return values;
+}
+
+spatial::Pose PoseOf(const std::map<std::string, std::string>& values, const std::string& which) {
+  const auto number = [&](const std::string& key) {
+    const auto value = values.find(which + "." + key);
+    return std::stod(value == values.end() ? "" : value->second);
+  };
+  const Vec3 axis(number("axis.x"), number("axis.y"), number("axis.z"));
+  const Vec3 turn = number("theta") * axis.normalized();
+  return {spatial::RotationFromVector(turn), kUnit * Vec3(number("x"), number("y"), number("z"))};
+}
+
+/** What versions of OMPL.app and assimp take as a part's origin. */
+std::vector<std::pair<const char*, Vec3>> ListOrigins(const std::vector<Vec3>& vertices) {
+  Vec3 mean = Vec3::Zero();
+  spatial::Box box;
+  std::set<std::array<double, 3>> different;
+  for (const Vec3& v : vertices) {
+    mean += v / static_cast<double>(vertices.size());
+    box.Add(v);
+    different.insert({v.x(), v.y(), v.z()});
+  }
+  Vec3 mean_of_different = Vec3::Zero();
+  for (const auto& v : different) {
+    mean_of_different += Vec3(v[0], v[1], v[2]) / static_cast<double>(different.size());
+  }
+  return {{"mean of vertices", mean},
+          {"mean of different vertices", mean_of_different},
+          {"centre of the box", box.centre()},
+          {"origin of the file", Vec3::Zero()}};
+}
+
+/** Moves the part to the first origin with which neither end collides. */
+void MoveToOrigin(const std::vector<std::pair<const char*, Vec3>>& origins, Puzzle* puzzle) {
+  const std::vector<Vec3> vertices = puzzle->part.vertices;
+  for (const auto& [what, origin] : origins) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      puzzle->part.vertices[i] = vertices[i] - origin;
+    }
+    const FclPair pair(*puzzle);
+    const bool at_start = pair.Collides(puzzle->X_WB_start),
+               at_goal = pair.Collides(*puzzle->X_WB_goal);
+    std::cerr << fmt::format("    {}: {:.3f} {:.3f} {:.3f} mm, start {}, goal {}\n", what,
+                             1e3 * origin.x(), 1e3 * origin.y(), 1e3 * origin.z(),
+                             at_start ? "collides" : "free", at_goal ? "collides" : "free");
+    if (!at_start && !at_goal) {
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Result<Puzzle> LoadPuzzle(const std::string& config, double spacing) {
+  std::map<std::string, std::string> values = ReadValues(config);
   if (values.count("robot") == 0 || values.count("world") == 0) {
     return Fail(ErrorCode::kUnreadable, "no robot or no world in the configuration", config, "");
   }
@@ -255,52 +336,11 @@ Result<Puzzle> LoadPuzzle(const std::string& config, double spacing) {
     puzzle.tolerance = is_tight ? -300e-6 : -400e-6;
     spacing = spacing > 0 ? spacing : is_tight ? 0.8e-3 : 0.4e-3;
   }
-  puzzle.part = TurnOutward(*part);
-  puzzle.around = TurnOutward(*around);
-  const auto pose = [&](const std::string& which) {
-    const auto number = [&](const std::string& key) {
-      return std::stod(values[which + "." + key]);
-    };
-    const Vec3 axis(number("axis.x"), number("axis.y"), number("axis.z"));
-    const Vec3 turn = number("theta") * axis.normalized();
-    return spatial::Pose(spatial::RotationFromVector(turn),
-                         kUnit * Vec3(number("x"), number("y"), number("z")));
-  };
-  puzzle.X_WB_start = pose("start");
-  puzzle.X_WB_goal = pose("goal");
-  // Versions of OMPL.app and assimp differ in what they take as the part's origin.
-  Vec3 mean = Vec3::Zero();
-  spatial::Box box;
-  std::set<std::array<double, 3>> different;
-  for (const Vec3& v : part->vertices) {
-    mean += v / static_cast<double>(part->vertices.size());
-    box.Add(v);
-    different.insert({v.x(), v.y(), v.z()});
-  }
-  Vec3 mean_of_different = Vec3::Zero();
-  for (const auto& v : different) {
-    mean_of_different += Vec3(v[0], v[1], v[2]) / static_cast<double>(different.size());
-  }
-  const std::vector<Vec3> vertices = puzzle.part.vertices;
-  const std::vector<std::pair<const char*, Vec3>> origins{
-      {"mean of vertices", mean},
-      {"mean of different vertices", mean_of_different},
-      {"centre of the box", box.centre()},
-      {"origin of the file", Vec3::Zero()}};
-  for (const auto& [what, origin] : origins) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      puzzle.part.vertices[i] = vertices[i] - origin;
-    }
-    const FclPair pair(puzzle);
-    const bool at_start = pair.Collides(puzzle.X_WB_start),
-               at_goal = pair.Collides(*puzzle.X_WB_goal);
-    std::cerr << fmt::format("    {}: {:.3f} {:.3f} {:.3f} mm, start {}, goal {}\n", what,
-                             1e3 * origin.x(), 1e3 * origin.y(), 1e3 * origin.z(),
-                             at_start ? "collides" : "free", at_goal ? "collides" : "free");
-    if (!at_start && !at_goal) {
-      break;
-    }
-  }
+  puzzle.part = OutwardMesh(*part).Take();
+  puzzle.around = OutwardMesh(*around).Take();
+  puzzle.X_WB_start = PoseOf(values, "start");
+  puzzle.X_WB_goal = PoseOf(values, "goal");
+  MoveToOrigin(ListOrigins(part->vertices), &puzzle);
   if (const auto made = MakeShapes(&puzzle, spacing, 0); !made) {
     return Unexpected(made.error());
   }

@@ -341,6 +341,15 @@ class PythonRun {
     return {Quat(X[3], X[4], X[5], X[6]), Vec3(X[0], X[1], X[2])};
   }
 
+  /** Poses of all parts. */
+  [[nodiscard]] py::list ListPoses() const {
+    py::list poses;
+    for (const simulation::PartState& part : run_->ListParts()) {
+      poses.append(ToTuple(part.X_WB));
+    }
+    return poses;
+  }
+
   [[nodiscard]] const SteppedRun& run() const { return *run_; }
 
   [[nodiscard]] const Model& model() const { return *model_; }
@@ -360,13 +369,7 @@ class PythonRun {
   std::span<const TickRow> rows_;
 };
 
-}  // namespace
-
-void DefineRun(py::module_* module) {
-  PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
-                       insertion, axial_true, preload, tightening, offset, tilt, contacts, state);
-  PYBIND11_NUMPY_DTYPE(ContactRow, p_WC, f_C_W, distance, other);
-  const simulation::PersonOptions arm;
+void DefineModel(py::module_* module) {
   py::class_<ModelHandle>(*module, "Model",
                           "A product that is prepared: immutable, and shared by all runs.")
       .def_property_readonly("steps", &ListSteps, "The order of assembly.")
@@ -394,21 +397,11 @@ void DefineRun(py::module_* module) {
       });
   module->def("prepare", &Prepare, py::arg("product"), py::arg("seed"), py::arg("base"),
               py::arg("first_parts"), py::arg("cache"), py::arg("progress"));
-  py::class_<PythonRun>(
-      *module, "Run",
-      "One step of the order, tick by tick, with a hand that the caller leads. The part is in the "
-      "hand from the beginning.\n\n"
-      "Args:\n"
-      "    model: As hvas.prepare gives it.\n"
-      "    step: Index of a step that inserts a part.\n"
-      "    start: Pose of the part when it is taken; None: where it lies on the table.\n"
-      "    condition: 'hybrid', 'collision' (contact only) or 'constraint' (mates only).\n"
-      "    contact_in_holes: A shaft with play touches its hole: it tilts, jams and wedges.\n"
-      "    threads_turn: Screws and nuts go in by turning, and are tightened.\n"
-      "    stiffness, damping, turn_stiffness, turn_damping: Of the arm [N/m, N s/m, N m/rad, N m "
-      "s/rad].\n"
-      "    rate_hz: Of the haptic tick, 1000 to 8000.")
-      .def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
+}
+
+void DefineStep(py::class_<PythonRun>* run) {
+  const simulation::PersonOptions arm;
+  run->def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
                     bool, double, double, double, double, double>(),
            py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
            py::arg("condition") = "hybrid", py::arg("contact_in_holes") = false,
@@ -435,10 +428,13 @@ void DefineRun(py::module_* module) {
           "(force, "
           "then torque), p_WC and f_C_W (the contact that presses hardest), deepest, insertion, "
           "axial_true, preload, tightening, offset, tilt, contacts, state (index into "
-          "hvas.STATES).")
-      .def_property_readonly(
-          "rows", [](const py::object& self) { return PythonRun::View(self); },
-          "What the last step returned.")
+          "hvas.STATES).");
+}
+
+void DefineState(py::class_<PythonRun>* run) {
+  run->def_property_readonly(
+         "rows", [](const py::object& self) { return PythonRun::View(self); },
+         "What the last step returned.")
       .def_property_readonly(
           "contacts", [](const py::object& self) { return PythonRun::ViewContacts(self); },
           "All contacts that pressed on the part in the last tick, a view as rows are. Fields: "
@@ -459,14 +455,7 @@ void DefineRun(py::module_* module) {
           [](const PythonRun& run) { return py::array_t<double>(6, run.run().last().F_felt_W); },
           "Force and torque that the hand is given [N, N m].")
       .def_property_readonly("goal", [](const PythonRun& run) { return ToTuple(run.run().goal()); })
-      .def_property_readonly("poses",
-                             [](const PythonRun& run) {
-                               py::list poses;
-                               for (const simulation::PartState& part : run.run().ListParts()) {
-                                 poses.append(ToTuple(part.X_WB));
-                               }
-                               return poses;
-                             })
+      .def_property_readonly("poses", &PythonRun::ListPoses)
       .def(
           "picture",
           [](const PythonRun& run, int width, int height, const std::array<double, 3>& to_eye) {
@@ -480,6 +469,31 @@ void DefineRun(py::module_* module) {
       .def_property_readonly("mass", [](const PythonRun& run) {
         return simulation::CombineMass(run.model(), run.run().step()).mass;
       });
+}
+
+}  // namespace
+
+void DefineRun(py::module_* module) {
+  PYBIND11_NUMPY_DTYPE(TickRow, t_s, X_WH, X_WB, F_felt_W, F_true_W, p_WC, f_C_W, deepest,
+                       insertion, axial_true, preload, tightening, offset, tilt, contacts, state);
+  PYBIND11_NUMPY_DTYPE(ContactRow, p_WC, f_C_W, distance, other);
+  DefineModel(module);
+  py::class_<PythonRun> run(
+      *module, "Run",
+      "One step of the order, tick by tick, with a hand that the caller leads. The part is in the "
+      "hand from the beginning.\n\n"
+      "Args:\n"
+      "    model: As hvas.prepare gives it.\n"
+      "    step: Index of a step that inserts a part.\n"
+      "    start: Pose of the part when it is taken; None: where it lies on the table.\n"
+      "    condition: 'hybrid', 'collision' (contact only) or 'constraint' (mates only).\n"
+      "    contact_in_holes: A shaft with play touches its hole: it tilts, jams and wedges.\n"
+      "    threads_turn: Screws and nuts go in by turning, and are tightened.\n"
+      "    stiffness, damping, turn_stiffness, turn_damping: Of the arm [N/m, N s/m, N m/rad, N m "
+      "s/rad].\n"
+      "    rate_hz: Of the haptic tick, 1000 to 8000.");
+  DefineStep(&run);
+  DefineState(&run);
   module->attr("STATES") = py::make_tuple("empty", "free", "near", "captured", "mating", "seated");
 }
 
