@@ -21,63 +21,90 @@ constexpr double kZero = 1e-6;  // Of products of unit vectors: what rounding le
 
 /** The least distance of A x from b over x >= 0.
  Source: Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23. */
-double SolveNonNegative(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  const Eigen::Index n = A.cols();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  std::vector<bool> is_used(static_cast<std::size_t>(n), false);
-  const Eigen::Index most_rounds = 10 * n + 100;  // Lawson and Hanson: it ends; rounding may cycle.
-  for (Eigen::Index round = 0; round < most_rounds; ++round) {
-    const Eigen::VectorXd gradient = A.transpose() * (b - A * x);
-    Eigen::Index best = -1;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (!is_used[static_cast<std::size_t>(i)] && gradient[i] > kZero * kZero &&
-          (best < 0 || gradient[i] > gradient[best])) {
+class NonNegativeLeastSquares {
+ public:
+  NonNegativeLeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
+      : A_(A),
+        b_(b),
+        x_(Eigen::VectorXd::Zero(A.cols())),
+        is_used_(static_cast<std::size_t>(A.cols()), false) {}
+
+  double Solve() {
+    // Lawson and Hanson: it ends; rounding may cycle.
+    const Eigen::Index most_rounds = 10 * A_.cols() + 100;
+    for (Eigen::Index round = 0; round < most_rounds; ++round) {
+      const std::optional<Eigen::Index> best = FindSteepest();
+      if (!best) {
+        break;
+      }
+      is_used_[static_cast<std::size_t>(*best)] = true;
+      while (!TrySolveUsed()) {
+      }
+    }
+    return (A_ * x_ - b_).norm();
+  }
+
+ private:
+  /** The unused variable that the distance falls fastest with. */
+  [[nodiscard]] std::optional<Eigen::Index> FindSteepest() const {
+    const Eigen::VectorXd gradient = A_.transpose() * (b_ - A_ * x_);
+    std::optional<Eigen::Index> best;
+    for (Eigen::Index i = 0; i < A_.cols(); ++i) {
+      if (!is_used_[static_cast<std::size_t>(i)] && gradient[i] > kZero * kZero &&
+          (!best || gradient[i] > gradient[*best])) {
         best = i;
       }
     }
-    if (best < 0) {
-      break;
-    }
-    is_used[static_cast<std::size_t>(best)] = true;
-    for (;;) {
-      std::vector<Eigen::Index> used;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (is_used[static_cast<std::size_t>(i)]) {
-          used.push_back(i);
-        }
-      }
-      if (used.empty()) {
-        break;
-      }
-      Eigen::MatrixXd columns(A.rows(), static_cast<Eigen::Index>(used.size()));
-      for (std::size_t k = 0; k < used.size(); ++k) {
-        columns.col(static_cast<Eigen::Index>(k)) = A.col(used[k]);
-      }
-      const Eigen::VectorXd z = columns.completeOrthogonalDecomposition().solve(b);
-      double share = 1;
-      for (std::size_t k = 0; k < used.size(); ++k) {
-        const double to = z[static_cast<Eigen::Index>(k)];
-        if (to <= 0) {
-          share = std::min(share, x[used[k]] / std::max(x[used[k]] - to, 1e-300));
-        }
-      }
-      bool is_removed = false;
-      for (std::size_t k = 0; k < used.size(); ++k) {
-        double& value = x[used[k]];
-        value += share * (z[static_cast<Eigen::Index>(k)] - value);
-        if (share < 1 && value <= kZero * kZero) {
-          value = 0;
-          is_used[static_cast<std::size_t>(used[k])] = false;
-          is_removed = true;
-        }
-      }
-      if (share == 1 || !is_removed) {
-        break;
-      }
-    }
+    return best;
   }
-  return (A * x - b).norm();
-}
+
+  [[nodiscard]] std::vector<Eigen::Index> ListUsed() const {
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index i = 0; i < A_.cols(); ++i) {
+      if (is_used_[static_cast<std::size_t>(i)]) {
+        used.push_back(i);
+      }
+    }
+    return used;
+  }
+
+  /** Moves the used variables towards the least distance without a bound, until the first comes to
+   zero and is used no more. Returns whether none had to. */
+  bool TrySolveUsed() {
+    const std::vector<Eigen::Index> used = ListUsed();
+    if (used.empty()) {
+      return true;
+    }
+    Eigen::MatrixXd columns(A_.rows(), static_cast<Eigen::Index>(used.size()));
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      columns.col(static_cast<Eigen::Index>(k)) = A_.col(used[k]);
+    }
+    const Eigen::VectorXd z = columns.completeOrthogonalDecomposition().solve(b_);
+    double share = 1;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const double to = z[static_cast<Eigen::Index>(k)];
+      if (to <= 0) {
+        share = std::min(share, x_[used[k]] / std::max(x_[used[k]] - to, 1e-300));
+      }
+    }
+    bool is_removed = false;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      double& value = x_[used[k]];
+      value += share * (z[static_cast<Eigen::Index>(k)] - value);
+      if (share < 1 && value <= kZero * kZero) {
+        value = 0;
+        is_used_[static_cast<std::size_t>(used[k])] = false;
+        is_removed = true;
+      }
+    }
+    return share == 1 || !is_removed;
+  }
+
+  const Eigen::MatrixXd& A_;
+  const Eigen::VectorXd& b_;
+  Eigen::VectorXd x_;
+  std::vector<bool> is_used_;  // Variables that may be more than zero.
+};
 
 /** The motions that leave a part of revolution where it is: turns about its axis, or about the
  centre of a ball; none for others. In B, torque arms from `centre`. */
@@ -334,7 +361,7 @@ bool DoRowsHold(const std::vector<Vec6>& rows, const std::vector<Vec6>& free) {
     return false;
   }
   const Eigen::VectorXd sum = columns.rowwise().sum();
-  return SolveNonNegative(columns, -sum) < kZero * std::max(1.0, sum.norm());
+  return NonNegativeLeastSquares(columns, -sum).Solve() < kZero * std::max(1.0, sum.norm());
 }
 
 bool IsHeldByContacts(const product::Product& product, const contact::Scene& scene, OccurrenceId id,

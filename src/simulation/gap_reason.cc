@@ -55,6 +55,11 @@ class GapExplainer {
  private:
   /** Begins anew with the parts of reason_.present, what is explained, and the fixtures. */
   void Restart();
+  /** Lists the parts that are there as far as the order goes. */
+  [[nodiscard]] Unit ListAllButGaps() const;
+  /** Chooses the parts that are there, and begins with them. Returns whether they are given, by the
+   caller or by the order. */
+  bool ChoosePresent();
   /** The parts that are there when the step of the part comes; none where it has no step. */
   [[nodiscard]] std::optional<Unit> FindEarlier() const;
   /** Leaves those that do not come out while the part is there. */
@@ -82,8 +87,13 @@ class GapExplainer {
   /** How thick the part is where it is thickest, or the thinnest of others where that is more [m].
    */
   [[nodiscard]] double FindThickness(const Unit& others) const;
+  /** Tries clearance from what is met on the best way, and where that is not enough, on all. */
+  void TryClearances();
   void TryClearance(const Unit& others);
+  /** Tries what comes of it when the part, or one that it meets on the best way, yields. */
+  void TryFlexibles();
   void TryFlexible(OccurrenceId gives);
+  void RankChanges();
   /** The least amount that lets the part out, to the resolution, and the way; none: not even the
    largest does. */
   template <typename Try>
@@ -510,41 +520,85 @@ void GapExplainer::TryFlexible(OccurrenceId gives) {
   reason_.changes.push_back(std::move(change));
 }
 
-GapReason GapExplainer::Explain() {
-  const OccurrenceId id = reason_.occurrence;
-  bool is_order_given = true;
-  if (options_.present) {
-    reason_.present = *options_.present;
-  } else if (std::optional<Unit> earlier = FindEarlier()) {
-    reason_.present = std::move(*earlier);
-  } else {
-    is_order_given = false;
-    Unit gone = input_.absent;
-    for (const SequenceGap& gap : model_.sequence.gaps) {
-      if (gap.occurrence == id) {
-        break;
-      }
-      gone.push_back(gap.occurrence);
+Unit GapExplainer::ListAllButGaps() const {
+  Unit gone = input_.absent;
+  for (const SequenceGap& gap : model_.sequence.gaps) {
+    if (gap.occurrence == reason_.occurrence) {
+      break;
     }
-    for (const product::Occurrence& occurrence : product_.occurrences) {
-      if (!Contains(gone, occurrence.id) && !Contains(input_.fixtures, occurrence.id)) {
-        reason_.present.push_back(occurrence.id);
-      }
+    gone.push_back(gap.occurrence);
+  }
+  Unit present;
+  for (const product::Occurrence& occurrence : product_.occurrences) {
+    if (!Contains(gone, occurrence.id) && !Contains(input_.fixtures, occurrence.id)) {
+      present.push_back(occurrence.id);
     }
   }
-  std::erase(reason_.present, id);
+  return present;
+}
+
+bool GapExplainer::ChoosePresent() {
+  const std::optional<Unit> given = options_.present ? options_.present : FindEarlier();
+  reason_.present = given ? *given : ListAllButGaps();
+  std::erase(reason_.present, reason_.occurrence);
   base_ = FindBase(model_.sequence);
   if (!Contains(reason_.present, base_)) {  // A subassembly: its base comes first.
     base_ = reason_.present.empty() ? OccurrenceId() : reason_.present.front();
   }
   Restart();
-  if (!is_order_given) {
+  if (!given) {
     KeepWhatStays();
     Restart();
   }
+  return given.has_value();
+}
+
+void GapExplainer::TryClearances() {
+  if (ways_.empty() || ways_.front().others.empty() || IsOver()) {
+    return;
+  }
+  const Unit& stopping = ways_.front().others;
+  TryClearance(stopping);
+  Unit all = stopping;
+  for (const StraightWay& way : ways_) {
+    for (const OccurrenceId other : way.others) {
+      if (!Contains(all, other)) {
+        all.push_back(other);
+      }
+    }
+  }
+  if (!reason_.changes.back().has_worked && all.size() > stopping.size() && !IsOver()) {
+    TryClearance(all);
+  }
+}
+
+void GapExplainer::TryFlexibles() {
+  Unit giving{reason_.occurrence};
+  for (const OccurrenceId other : ways_.empty() ? Unit() : ways_.front().others) {
+    if (giving.size() <= options_.most_others) {
+      giving.push_back(other);
+    }
+  }
+  for (std::size_t i = 0; i < giving.size() && !IsOver(); ++i) {
+    TryFlexible(giving[i]);
+  }
+}
+
+void GapExplainer::RankChanges() {
+  std::stable_sort(
+      reason_.changes.begin(), reason_.changes.end(), [](const GapChange& a, const GapChange& b) {
+        const auto rank = [](const GapChange& change) {
+          return std::tuple(!change.has_worked, change.kind, change.parts.size(), change.amount);
+        };
+        return rank(a) < rank(b);
+      });
+}
+
+GapReason GapExplainer::Explain() {
+  const bool is_order_given = ChoosePresent();
   ReportProgress(0.1);
   if (!IsOver()) {
-    const std::optional<WayOut> way = FindWayOut(id, {is_order_given, true});
+    const std::optional<WayOut> way = FindWayOut(reason_.occurrence, {is_order_given, true});
     reason_.has_way = way.has_value();
     reason_.direction_W = way ? way->step.extraction_W : Vec3::Zero();
   }
@@ -556,40 +610,10 @@ GapReason GapExplainer::Explain() {
   Prove();
   ReportProgress(0.4);
   TryOthers();
-  // What is met on the best way; where that is not enough, on all.
-  Unit stopping = ways_.empty() ? Unit() : ways_.front().others;
-  const auto has_room_worked = [this] { return reason_.changes.back().has_worked; };
-  if (!stopping.empty() && !IsOver()) {
-    TryClearance(stopping);
-    Unit all = stopping;
-    for (const StraightWay& way : ways_) {
-      for (const OccurrenceId other : way.others) {
-        if (!Contains(all, other)) {
-          all.push_back(other);
-        }
-      }
-    }
-    if (!has_room_worked() && all.size() > stopping.size() && !IsOver()) {
-      TryClearance(all);
-    }
-  }
+  TryClearances();
   ReportProgress(0.8);
-  Unit giving{id};
-  for (const OccurrenceId other : stopping) {
-    if (giving.size() <= options_.most_others) {
-      giving.push_back(other);
-    }
-  }
-  for (std::size_t i = 0; i < giving.size() && !IsOver(); ++i) {
-    TryFlexible(giving[i]);
-  }
-  std::stable_sort(
-      reason_.changes.begin(), reason_.changes.end(), [](const GapChange& a, const GapChange& b) {
-        const auto rank = [](const GapChange& change) {
-          return std::tuple(!change.has_worked, change.kind, change.parts.size(), change.amount);
-        };
-        return rank(a) < rank(b);
-      });
+  TryFlexibles();
+  RankChanges();
   (void)IsOver();
   ReportProgress(1);
   return std::move(reason_);

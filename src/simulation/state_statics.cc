@@ -313,6 +313,87 @@ double CalcMargin(const product::Part& part, const Vec3& p_BBcm, const Vec3& gha
 
 }  // namespace
 
+namespace {
+
+/** The bodies that are there in a state, with what holds them. */
+struct StateProblem {
+  statics::StaticProblem problem;
+  std::vector<int> body_of;  // By occurrence; statics::kGround: it is not there.
+  std::vector<OccurrenceId> occurrence_of;
+
+  [[nodiscard]] int BodyOf(OccurrenceId id) const { return body_of[id.index()]; }
+
+  [[nodiscard]] bool Has(OccurrenceId id) const { return BodyOf(id) != statics::kGround; }
+};
+
+void AddContacts(const std::vector<StateContact>& contacts, const Vec3& ghat_W,
+                 StateProblem* state) {
+  for (const StateContact& pair : contacts) {
+    statics::StaticContact contact = pair.contact;
+    contact.a = state->body_of[static_cast<std::size_t>(pair.contact.a)];
+    contact.b = state->body_of[static_cast<std::size_t>(pair.contact.b)];
+    if (contact.a == statics::kGround || contact.b == statics::kGround) {
+      continue;
+    }
+    if (pair.is_on_walls || std::abs(contact.nhat_W.dot(ghat_W)) < kUprightWall) {
+      contact.friction = 0;
+    }
+    state->problem.contacts.push_back(contact);
+  }
+}
+
+void AddJoints(const std::vector<Body>& bodies, const std::vector<StateJoint>& joints,
+               StateProblem* state) {
+  for (const StateJoint& joint : joints) {
+    if (!state->Has(joint.a) || !state->Has(joint.b)) {
+      continue;
+    }
+    // The lighter part lies in, or on, the other one with its weight across the axis.
+    const double mass =
+        std::min(bodies[joint.a.index()].mass.mass, bodies[joint.b.index()].mass.mass);
+    const double across = joint.friction * mass * state->problem.g_W.cross(joint.axis_W).norm();
+    state->problem.joints.push_back({state->BodyOf(joint.a), state->BodyOf(joint.b), joint.p_W,
+                                     joint.axis_W, joint.pull_out + across,
+                                     joint.torque + across * joint.radius});
+  }
+}
+
+void AddClamps(const std::vector<StateClamp>& clamps, StateProblem* state) {
+  for (const StateClamp& clamp : clamps) {
+    if (state->Has(clamp.part) && state->Has(clamp.screw) && state->Has(clamp.nut)) {
+      statics::StaticJoint joint;
+      joint.a = state->BodyOf(clamp.part);
+      joint.b = state->BodyOf(clamp.by);
+      joint.p_W = clamp.p_W;
+      state->problem.joints.push_back(joint);
+    }
+  }
+}
+
+/** Solves for the equilibrium, and for the least holds where they are asked for. */
+Result<statics::Equilibrium> Solve(const StateProblem& state, bool finds_least_holds,
+                                   StateStability* stability) {
+  if (!finds_least_holds) {
+    auto found = statics::SolveEquilibrium(state.problem);
+    if (found) {
+      stability->is_least_proven = found->stands;
+    }
+    return found;
+  }
+  auto holds = statics::FindLeastHolds(state.problem);
+  if (!holds) {
+    return Unexpected(holds.error());
+  }
+  for (const int body : holds->bodies) {
+    stability->holds.push_back(state.occurrence_of[static_cast<std::size_t>(body)]);
+  }
+  stability->least = holds->least;
+  stability->is_least_proven = holds->is_proven;
+  return std::move(holds->unheld);
+}
+
+}  // namespace
+
 struct StateStatics::Data {
   const Model& model;
   std::vector<StateContact> contacts;
@@ -322,7 +403,34 @@ struct StateStatics::Data {
   std::vector<bool> is_fixture;
 
   explicit Data(const Model& m) : model(m) {}
+
+  [[nodiscard]] StateProblem MakeProblem(const std::vector<bool>& is_in_place,
+                                         const StateStaticsOptions& options) const;
 };
+
+StateProblem StateStatics::Data::MakeProblem(const std::vector<bool>& is_in_place,
+                                             const StateStaticsOptions& options) const {
+  const OccurrenceId base = FindBase(model.sequence);
+  StateProblem state;
+  state.problem.g_W = statics::kStandardGravity * options.ghat_W;
+  state.body_of.assign(model.bodies.size(), statics::kGround);
+  for (const Body& body : model.bodies) {
+    const std::size_t i = body.occurrence.index();
+    if (is_tool[i] || (!is_fixture[i] && !is_in_place[i])) {
+      continue;
+    }
+    state.body_of[i] = static_cast<int>(state.occurrence_of.size());
+    state.occurrence_of.push_back(body.occurrence);
+    const bool is_held = is_fixture[i] || (options.is_base_held && body.occurrence == base);
+    state.problem.bodies.push_back({body.mass.mass, body.X_WB_goal * body.mass.p_BoBcm_B, is_held});
+  }
+  AddContacts(contacts, options.ghat_W, &state);
+  AddJoints(model.bodies, joints, &state);
+  if (options.are_screws_tight) {
+    AddClamps(clamped, &state);
+  }
+  return state;
+}
 
 StateStatics::StateStatics(const Model& model) {
   auto data = std::make_unique<Data>(model);
@@ -358,95 +466,25 @@ StateStatics::~StateStatics() = default;
 
 Result<StateStability> StateStatics::CalcStability(const std::vector<bool>& is_in_place,
                                                    const StateStaticsOptions& options) const {
-  const Model& model = data_->model;
-  const std::size_t count = model.bodies.size();
-  if (is_in_place.size() != count) {
+  if (is_in_place.size() != data_->model.bodies.size()) {
     return Fail(ErrorCode::kInvalid, "the state has not one entry for each part");
   }
   // Rounding of what callers make may be in the length.
   if (!options.ghat_W.allFinite() || std::abs(options.ghat_W.norm() - 1) > 1e-6) {
     return Fail(ErrorCode::kInvalid, "the direction of gravity is no unit vector");
   }
-  const OccurrenceId base = FindBase(model.sequence);
-  statics::StaticProblem problem;
-  problem.g_W = statics::kStandardGravity * options.ghat_W;
-  std::vector<int> body_of(count, statics::kGround);
-  std::vector<OccurrenceId> occurrence_of;
-  const auto is_there = [&](OccurrenceId id) {
-    return !data_->is_tool[id.index()] &&
-           (data_->is_fixture[id.index()] || is_in_place[id.index()]);
-  };
-  for (const Body& body : model.bodies) {
-    if (is_there(body.occurrence)) {
-      body_of[body.occurrence.index()] = static_cast<int>(occurrence_of.size());
-      occurrence_of.push_back(body.occurrence);
-      const bool is_held = data_->is_fixture[body.occurrence.index()] ||
-                           (options.is_base_held && body.occurrence == base);
-      problem.bodies.push_back({body.mass.mass, body.X_WB_goal * body.mass.p_BoBcm_B, is_held});
-    }
-  }
-  for (const StateContact& pair : data_->contacts) {
-    statics::StaticContact contact = pair.contact;
-    contact.a = body_of[static_cast<std::size_t>(pair.contact.a)];
-    contact.b = body_of[static_cast<std::size_t>(pair.contact.b)];
-    if (contact.a == statics::kGround || contact.b == statics::kGround) {
-      continue;
-    }
-    if (pair.is_on_walls || std::abs(contact.nhat_W.dot(options.ghat_W)) < kUprightWall) {
-      contact.friction = 0;
-    }
-    problem.contacts.push_back(contact);
-  }
-  for (const StateJoint& joint : data_->joints) {
-    if (!is_there(joint.a) || !is_there(joint.b)) {
-      continue;
-    }
-    // The lighter part lies in, or on, the other one with its weight across the axis.
-    const double mass =
-        std::min(model.bodies[joint.a.index()].mass.mass, model.bodies[joint.b.index()].mass.mass);
-    const double across = joint.friction * mass * problem.g_W.cross(joint.axis_W).norm();
-    problem.joints.push_back({body_of[joint.a.index()], body_of[joint.b.index()], joint.p_W,
-                              joint.axis_W, joint.pull_out + across,
-                              joint.torque + across * joint.radius});
-  }
-  for (const StateClamp& clamped : data_->clamped) {
-    if (options.are_screws_tight && is_there(clamped.part) && is_there(clamped.screw) &&
-        is_there(clamped.nut)) {
-      statics::StaticJoint joint;
-      joint.a = body_of[clamped.part.index()];
-      joint.b = body_of[clamped.by.index()];
-      joint.p_W = clamped.p_W;
-      problem.joints.push_back(joint);
-    }
-  }
-
+  const StateProblem state = data_->MakeProblem(is_in_place, options);
   StateStability stability;
-  statics::Equilibrium equilibrium;
-  if (options.finds_least_holds) {
-    auto holds = statics::FindLeastHolds(problem);
-    if (!holds) {
-      return Unexpected(holds.error());
-    }
-    equilibrium = std::move(holds->unheld);
-    for (const int body : holds->bodies) {
-      stability.holds.push_back(occurrence_of[static_cast<std::size_t>(body)]);
-    }
-    stability.least = holds->least;
-    stability.is_least_proven = holds->is_proven;
-  } else {
-    auto found = statics::SolveEquilibrium(problem);
-    if (!found) {
-      return Unexpected(found.error());
-    }
-    equilibrium = std::move(*found);
-    stability.is_least_proven = equilibrium.stands;
+  const auto equilibrium = Solve(state, options.finds_least_holds, &stability);
+  if (!equilibrium) {
+    return Unexpected(equilibrium.error());
   }
-  stability.stands = equilibrium.stands;
-  stability.contact_count = problem.contacts.size();
-  stability.joint_count = problem.joints.size();
-  for (std::size_t i = 0; i < occurrence_of.size(); ++i) {
-    if (equilibrium.moves[i]) {
-      stability.moving.push_back(occurrence_of[i]);
+  stability.stands = equilibrium->stands;
+  stability.contact_count = state.problem.contacts.size();
+  stability.joint_count = state.problem.joints.size();
+  for (std::size_t i = 0; i < state.occurrence_of.size(); ++i) {
+    if (equilibrium->moves[i]) {
+      stability.moving.push_back(state.occurrence_of[i]);
     }
   }
   return stability;

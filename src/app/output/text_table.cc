@@ -91,51 +91,58 @@ std::vector<std::size_t> TextTable::CalcWidths() const {
   return widths;
 }
 
-std::string TextTable::ToText(std::size_t indent) const {
-  std::vector<std::size_t> widths = CalcWidths();
-  const std::size_t room = CountColumns() - indent;
+void TextTable::NarrowNames(std::size_t room, std::vector<std::size_t>* widths) const {
   const std::size_t whole =
-      std::accumulate(widths.begin(), widths.end(), std::size_t{0}) + kGap * (widths.size() - 1);
+      std::accumulate(widths->begin(), widths->end(), std::size_t{0}) + kGap * (widths->size() - 1);
   if (left_ > 0 && whole > room) {
-    std::size_t& name = widths[left_ - 1];
+    std::size_t& name = (*widths)[left_ - 1];
     const std::size_t least = std::min(name, kLeastName);
     const std::size_t too_wide = whole - room;
     name = name >= least + too_wide ? name - too_wide : std::min(name, room / 3);
   }
-  std::vector<std::vector<std::string>> heads;
-  std::size_t height = 1;
-  for (const std::string& head : heads_) {
-    heads.push_back(SplitLines(head));
-    height = std::max(height, heads.back().size());
+}
+
+std::vector<std::vector<std::string>> TextTable::SplitHeads() const {
+  std::vector<std::vector<std::string>> lines;
+  for (std::size_t i = 0; i < heads_.size(); ++i) {
+    const std::vector<std::string> of_head = SplitLines(heads_[i]);
+    lines.resize(std::max(lines.size(), of_head.size()), std::vector<std::string>(heads_.size()));
+    for (std::size_t k = 0; k < of_head.size(); ++k) {
+      lines[k][i] = of_head[k];
+    }
   }
+  return lines;
+}
+
+std::string TextTable::ToText(std::size_t indent) const {
+  std::vector<std::size_t> widths = CalcWidths();
+  const std::size_t room = CountColumns() - indent;
+  NarrowNames(room, &widths);
+  const std::vector<std::vector<std::string>> heads = SplitHeads();
   std::string text;
   for (const Block& block : MakeBlocks(widths, left_, room)) {
-    text += text.empty() ? "" : "\n";
-    const auto add_line = [&](const auto& cell_of) {
+    std::vector<std::size_t> columns(left_ + block.end - block.begin);
+    std::iota(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(left_), 0);
+    std::iota(columns.begin() + static_cast<std::ptrdiff_t>(left_), columns.end(), block.begin);
+    const auto add_line = [&](const std::vector<std::string>& cells) {
       std::string line(indent, ' ');
-      for (std::size_t i = 0; i < block.end; ++i) {
-        if (i < left_ || i >= block.begin) {
-          line += Cell(cell_of(i), widths[i], i < left_) + std::string(kGap, ' ');
-        }
+      for (const std::size_t i : columns) {
+        line +=
+            Cell(i < cells.size() ? cells[i] : "", widths[i], i < left_) + std::string(kGap, ' ');
       }
       EndLine(&line);
       text += line;
     };
-    for (std::size_t k = 0; k < height; ++k) {
-      const auto has_head = [&](std::size_t i) {
-        return k < heads[i].size() && !heads[i][k].empty();
-      };
-      bool is_empty = true;
-      for (std::size_t i = 0; i < block.end; ++i) {
-        is_empty = is_empty && !((i < left_ || i >= block.begin) && has_head(i));
+    text += text.empty() ? "" : "\n";
+    for (const std::vector<std::string>& line : heads) {
+      const bool is_empty = std::all_of(columns.begin(), columns.end(),
+                                        [&](std::size_t i) { return line[i].empty(); });
+      if (!is_empty) {
+        add_line(line);
       }
-      if (is_empty) {
-        continue;
-      }
-      add_line([&](std::size_t i) { return k < heads[i].size() ? heads[i][k] : std::string(); });
     }
     for (const Row& row : rows_) {
-      add_line([&](std::size_t i) { return i < row.cells.size() ? row.cells[i] : std::string(); });
+      add_line(row.cells);
       if (!row.below.empty() && block.begin == left_) {
         text += Wrap(row.below, indent + 4);
       }

@@ -31,6 +31,10 @@ class TextTable {
   };
 
   [[nodiscard]] std::vector<std::size_t> CalcWidths() const;
+  /** Takes from the width of the names what the table is wider than the terminal. */
+  void NarrowNames(std::size_t room, std::vector<std::size_t>* widths) const;
+  /** Splits the heads into lines with a cell for each column. */
+  [[nodiscard]] std::vector<std::vector<std::string>> SplitHeads() const;
 
   std::vector<std::string> heads_;
   std::size_t left_;
