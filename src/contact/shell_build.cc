@@ -176,6 +176,36 @@ bool IsFlatBoundary(const Shape::Data& data, std::uint32_t f, std::uint32_t g) {
   return f != g && is_flat_f != is_flat_g;
 }
 
+// Adds the samples of the edge k of triangle t.
+void AddEdge(const Shape::Data& data, std::uint32_t t, std::size_t k, Sampler* sampler) {
+  const Mesh& mesh = data.mesh;
+  const std::uint32_t n = mesh.neighbour[t][k];
+  const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
+  const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
+  const std::uint32_t f = mesh.face[t];
+  const std::uint32_t g = mesh.face[n];
+  const Edge edge{data, t, n};
+  const bool is_freeform = data.exact.IsFreeform(f) || data.exact.IsFreeform(g);
+  Vec3 middle = 0.5 * (a + b);
+  const bool slides = !is_freeform || edge.Project(&middle);
+  const double spacing = (slides ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
+  const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
+  // The middle of a short edge too, so that an edge between two near corners gets its point.
+  for (int i = 0; i <= 2 * pieces; i += pieces == 1 ? 1 : 2) {
+    Vec3 p = a + (0.5 * i / pieces) * (b - a);
+    const bool is_on_curve = edge.Project(&p);
+    Sample sample{p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true};
+    sample.triangle = is_freeform && is_on_curve ? t : kNoFace;
+    sample.normals[0] = NormalAt(data, t, p);
+    if (f == g) {
+      sample.normals[0] = (mesh.NormalOf(t) + mesh.NormalOf(n)).normalized();
+    } else {
+      sample.normals[1] = NormalAt(data, n, p);
+    }
+    sampler->TryAdd(sample, 0.9 * spacing);
+  }
+}
+
 void AddEdges(const Shape::Data& data, Sampler* sampler) {
   const Mesh& mesh = data.mesh;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -185,32 +215,8 @@ void AddEdges(const Shape::Data& data, Sampler* sampler) {
       const bool is_wanted =
           kind == EdgeKind::kConvex || (kind == EdgeKind::kSmooth && n != kNoFace &&
                                         IsFlatBoundary(data, mesh.face[t], mesh.face[n]));
-      if (!is_wanted || n < t) {
-        continue;
-      }
-      const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
-      const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
-      const std::uint32_t f = mesh.face[t];
-      const std::uint32_t g = mesh.face[n];
-      const Edge edge{data, t, n};
-      const bool is_freeform = data.exact.IsFreeform(f) || data.exact.IsFreeform(g);
-      Vec3 middle = 0.5 * (a + b);
-      const bool slides = !is_freeform || edge.Project(&middle);
-      const double spacing = (slides ? kExactEdgeRatio : kEdgeRatio) * data.spacing;
-      const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
-      // The middle of a short edge too, so that an edge between two near corners gets its point.
-      for (int i = 0; i <= 2 * pieces; i += pieces == 1 ? 1 : 2) {
-        Vec3 p = a + (0.5 * i / pieces) * (b - a);
-        const bool is_on_curve = edge.Project(&p);
-        Sample sample{p, f == g ? FacesOf({f}) : FacesOf({f, g}), true, true};
-        sample.triangle = is_freeform && is_on_curve ? t : kNoFace;
-        sample.normals[0] = NormalAt(data, t, p);
-        if (f == g) {
-          sample.normals[0] = (mesh.NormalOf(t) + mesh.NormalOf(n)).normalized();
-        } else {
-          sample.normals[1] = NormalAt(data, n, p);
-        }
-        sampler->TryAdd(sample, 0.9 * spacing);
+      if (is_wanted && n >= t) {
+        AddEdge(data, t, k, sampler);
       }
     }
   }

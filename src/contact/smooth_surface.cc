@@ -295,26 +295,17 @@ Vec3 CalcBend(const Vec3& d, const Vec3& n0, const Vec3& n1, double most_sag) {
   return kSagOfBend * std::abs(size) <= most_sag ? Vec3(size / length * sum) : Vec3::Zero();
 }
 
-}  // namespace
+/** Normals at the corners of triangles; zero where they are not known. */
+using CornerNormals = std::vector<std::array<Vec3, 3>>;
 
-void FindBends(double diagonal, ExactTable* exact, Mesh* mesh) {
-  const std::vector<spatial::Surface>& faces = exact->faces;
-  const double most_sag = std::max(kMostSag * diagonal, kLeastSag);
-  const auto is_freeform = [&](std::uint32_t t) { return exact->IsFreeform(mesh->face[t]); };
-  const auto count = static_cast<std::uint32_t>(mesh->triangles.size());
-  mesh->bends.clear();
-  std::vector<std::uint32_t> wanted;
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (is_freeform(t)) {
-      wanted.push_back(t);
-    }
-  }
-  if (wanted.empty()) {
-    return;
-  }
-  std::vector<std::array<Vec3, 3>> normals(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+/** Finds the normals at the corners of the triangles that are wanted, once for all triangles around
+ a corner. */
+CornerNormals FindCornerNormals(const std::vector<spatial::Surface>& faces, const Mesh& mesh,
+                                const std::vector<std::uint32_t>& wanted) {
+  const std::size_t count = mesh.triangles.size();
+  CornerNormals normals(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
   std::vector<std::array<bool, 3>> is_known(count, {false, false, false});
-  NormalFinder finder(faces, *mesh);
+  NormalFinder finder(faces, mesh);
   std::vector<std::pair<std::uint32_t, std::size_t>> around;
   for (const std::uint32_t t : wanted) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -331,24 +322,52 @@ void FindBends(double diagonal, ExactTable* exact, Mesh* mesh) {
       }
     }
   }
+  return normals;
+}
+
+/** Finds the normal at a vertex of triangle t on its edge k. A freeform face that goes over into
+ another one shares the edge with it. */
+Vec3 FindEdgeNormal(const ExactTable& exact, const Mesh& mesh, const CornerNormals& normals,
+                    std::uint32_t t, std::size_t k, std::size_t corner) {
+  Vec3 n = normals[t][corner];
+  const std::uint32_t other = mesh.neighbour[t][k];
+  if (other != kNoFace && mesh.edge_kind[t][k] == EdgeKind::kSmooth &&
+      exact.IsFreeform(mesh.face[other])) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (mesh.triangles[other][j] == mesh.triangles[t][corner]) {
+        n += normals[other][j];
+      }
+    }
+  }
+  return n;
+}
+
+}  // namespace
+
+void FindBends(double diagonal, ExactTable* exact, Mesh* mesh) {
+  const double most_sag = std::max(kMostSag * diagonal, kLeastSag);
+  const auto count = static_cast<std::uint32_t>(mesh->triangles.size());
+  mesh->bends.clear();
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (exact->IsFreeform(mesh->face[t])) {
+      wanted.push_back(t);
+    }
+  }
+  if (wanted.empty()) {
+    return;
+  }
+  const CornerNormals normals = FindCornerNormals(exact->faces, *mesh, wanted);
   mesh->bends.assign(count, {});
   for (const std::uint32_t t : wanted) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Vec3 n0 = normals[t][k];
-      Vec3 n1 = normals[t][(k + 1) % 3];
-      const std::uint32_t from = mesh->triangles[t][k];
-      const std::uint32_t to = mesh->triangles[t][(k + 1) % 3];
-      const std::uint32_t other = mesh->neighbour[t][k];
-      // A freeform face that goes over into another one shares the edge with it.
-      if (other != kNoFace && mesh->edge_kind[t][k] == EdgeKind::kSmooth && is_freeform(other)) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          n0 += mesh->triangles[other][j] == from ? normals[other][j] : Vec3::Zero();
-          n1 += mesh->triangles[other][j] == to ? normals[other][j] : Vec3::Zero();
-        }
-      }
+      const std::size_t next = (k + 1) % 3;
+      const Vec3 n0 = FindEdgeNormal(*exact, *mesh, normals, t, k, k);
+      const Vec3 n1 = FindEdgeNormal(*exact, *mesh, normals, t, k, next);
       if (!n0.isZero() && !n1.isZero()) {
-        const Vec3 bend = CalcBend(mesh->vertices[to] - mesh->vertices[from], n0.normalized(),
-                                   n1.normalized(), most_sag);
+        const auto& corners = mesh->triangles[t];
+        const Vec3 bend = CalcBend(mesh->vertices[corners[next]] - mesh->vertices[corners[k]],
+                                   n0.normalized(), n1.normalized(), most_sag);
         mesh->bends[t][k] = ShortVec3(bend);
         double& deviation = exact->deviation[mesh->face[t]];
         deviation = std::max(deviation, kSagOfBend * bend.norm());

@@ -51,6 +51,88 @@ bool RepairStep(Probe* probe, const Pose& a, const Pose& b, double step, int dep
          RepairStep(probe, *between, b, step, depth + 1, out);
 }
 
+/** A way with places along it by length, so that long pieces are chosen as often as they are long.
+ */
+class MeasuredWay {
+ public:
+  MeasuredWay(Probe* probe, sweep::Path way, double step)
+      : probe_(*probe), way_(std::move(way)), step_(step) {
+    Measure();
+  }
+
+  [[nodiscard]] const sweep::Path& way() const { return way_; }
+
+  [[nodiscard]] double length() const { return at_.back(); }
+
+  /** Goes straight from one place to another where that is free, and shorter. */
+  void TryShortcut(double from, double to) {
+    const Place a = from <= 0 ? Place{from, 0, way_.front()} : PlaceAt(from);
+    const Place b = to >= length() ? Place{to, way_.size() - 2, way_.back()} : PlaceAt(to);
+    if (a.edge != b.edge && IsShorter(a, b) && IsScrewFree(&probe_, a.X, b.X, step_) &&
+        AreEndsFree(a, b)) {
+      Replace(a, b);
+    }
+  }
+
+ private:
+  struct Place {
+    double s;
+    std::size_t edge;
+    Pose X;
+  };
+
+  [[nodiscard]] Place PlaceAt(double s) const {
+    const auto next = std::upper_bound(at_.begin() + 1, at_.end() - 1, s);
+    const std::size_t edge = static_cast<std::size_t>(next - at_.begin()) - 1;
+    const double length = at_[edge + 1] - at_[edge];
+    return {s, edge,
+            sweep::Interpolate(way_[edge], way_[edge + 1],
+                               length > 0 ? (s - at_[edge]) / length : 0.0)};
+  }
+
+  [[nodiscard]] bool IsShorter(const Place& a, const Place& b) const {
+    const double along = b.s - a.s;
+    const double direct = probe_.CalcLength(probe_.CalcDisplacement(a.X, b.X));
+    return direct <= 0.98 * along || along - direct >= kShortest * probe_.size() ||
+           b.edge - a.edge >= 2;
+  }
+
+  [[nodiscard]] bool HasRestBefore(const Place& a) const { return a.s > at_[a.edge]; }
+
+  [[nodiscard]] bool HasRestAfter(const Place& b) const { return b.s < at_[b.edge + 1]; }
+
+  /** Whether what stays of the first and last edge is free: it is sampled at other places now. */
+  [[nodiscard]] bool AreEndsFree(const Place& a, const Place& b) {
+    return (!HasRestBefore(a) || IsScrewFree(&probe_, way_[a.edge], a.X, step_)) &&
+           (!HasRestAfter(b) || IsScrewFree(&probe_, b.X, way_[b.edge + 1], step_));
+  }
+
+  void Replace(const Place& a, const Place& b) {
+    sweep::Path next(way_.begin(), way_.begin() + static_cast<std::ptrdiff_t>(a.edge) + 1);
+    if (HasRestBefore(a)) {
+      next.push_back(a.X);
+    }
+    if (HasRestAfter(b)) {
+      next.push_back(b.X);
+    }
+    next.insert(next.end(), way_.begin() + static_cast<std::ptrdiff_t>(b.edge) + 1, way_.end());
+    way_ = std::move(next);
+    Measure();
+  }
+
+  void Measure() {
+    at_.assign(1, 0.0);
+    for (std::size_t i = 1; i < way_.size(); ++i) {
+      at_.push_back(at_.back() + probe_.CalcLength(probe_.CalcDisplacement(way_[i - 1], way_[i])));
+    }
+  }
+
+  Probe& probe_;
+  sweep::Path way_;
+  double step_;
+  std::vector<double> at_;  // Length of the way to each of its poses.
+};
+
 }  // namespace
 
 double CalcWayLength(const Probe& probe, const sweep::Path& path) {
@@ -76,66 +158,19 @@ std::optional<sweep::Path> RepairWay(Probe* probe, const sweep::Path& path, doub
 sweep::Path ShortenWay(Probe* probe, const sweep::Path& path, double step, std::uint64_t seed,
                        std::uint64_t budget) {
   Random random(seed);
-  sweep::Path way = path;
+  MeasuredWay way(probe, path, step);
   const std::uint64_t last = probe->queries() + budget;
-  // Places along the way by length, so that long pieces are chosen as often as they are long.
-  std::vector<double> at;
-  const auto measure = [&] {
-    at.assign(1, 0.0);
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      at.push_back(at.back() + probe->CalcLength(probe->CalcDisplacement(way[i - 1], way[i])));
-    }
-  };
-  const auto find = [&](double s, std::size_t* edge) {
-    const auto next = std::upper_bound(at.begin() + 1, at.end() - 1, s);
-    *edge = static_cast<std::size_t>(next - at.begin()) - 1;
-    const double length = at[*edge + 1] - at[*edge];
-    return sweep::Interpolate(way[*edge], way[*edge + 1],
-                              length > 0 ? (s - at[*edge]) / length : 0.0);
-  };
-  measure();
   for (int i = 0; i < kShortcuts && probe->queries() < last && !probe->is_over(); ++i) {
-    if (way.size() < 3) {
+    if (way.way().size() < 3) {
       break;
     }
     // Wide ones first, later also narrow ones.
-    const double widest = at.back() * (i < kShortcuts / 4 ? 1.0 : 0.3);
-    double from = i == 0 ? 0 : random.Uniform(0, at.back());
-    double to = i == 0 ? at.back() : from + random.Uniform(0.02, 1) * widest;
-    to = std::min(to, at.back());
-    std::size_t first = 0;
-    std::size_t second = 0;
-    const Pose a = from <= 0 ? way.front() : find(from, &first);
-    const Pose b = to >= at.back() ? way.back() : find(to, &second);
-    second = to >= at.back() ? way.size() - 2 : second;
-    if (first == second) {
-      continue;
-    }
-    const double direct = probe->CalcLength(probe->CalcDisplacement(a, b));
-    if (direct > 0.98 * (to - from) && to - from - direct < kShortest * probe->size() &&
-        second - first < 2) {
-      continue;
-    }
-    if (!IsScrewFree(probe, a, b, step)) {
-      continue;
-    }
-    // What stays of the first and last edge is sampled at other places than it was.
-    if ((from > at[first] && !IsScrewFree(probe, way[first], a, step)) ||
-        (to < at[second + 1] && !IsScrewFree(probe, b, way[second + 1], step))) {
-      continue;
-    }
-    sweep::Path next(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(first) + 1);
-    if (from > at[first]) {
-      next.push_back(a);
-    }
-    if (to < at[second + 1]) {
-      next.push_back(b);
-    }
-    next.insert(next.end(), way.begin() + static_cast<std::ptrdiff_t>(second) + 1, way.end());
-    way = std::move(next);
-    measure();
+    const double widest = way.length() * (i < kShortcuts / 4 ? 1.0 : 0.3);
+    const double from = i == 0 ? 0 : random.Uniform(0, way.length());
+    const double to = i == 0 ? way.length() : from + random.Uniform(0.02, 1) * widest;
+    way.TryShortcut(from, std::min(to, way.length()));
   }
-  return way;
+  return way.way();
 }
 
 }  // namespace hvas::planning

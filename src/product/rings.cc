@@ -75,66 +75,82 @@ double CalcEndRadius(const Ring& ring, std::size_t end, double seen) {
   return seen > 0 ? seen : ring.surface.radius;
 }
 
-void LookAtEnds(const FaceAdjacency& adjacency, Ring* ring) {
-  struct Sector {
-    const FaceEdge* edge{nullptr};
-    double z{0};
-    double radius{0};
-  };
+/** The segment of the border that lies furthest out in a sector of an end. */
+struct EndSector {
+  const FaceEdge* edge{nullptr};
+  double z{0};
+  double radius{0};
+};
 
-  std::array<std::array<Sector, kSectors>, 2> sectors;
-  const Mat3 R = spatial::FrameFromZ(ring->axis_B).toRotationMatrix();
-  for (const FaceId face : ring->faces) {
+using EndSectors = std::array<EndSector, kSectors>;
+
+std::array<EndSectors, 2> CollectEndSectors(const FaceAdjacency& adjacency, const Ring& ring) {
+  std::array<EndSectors, 2> sectors;
+  const Mat3 R = spatial::FrameFromZ(ring.axis_B).toRotationMatrix();
+  for (const FaceId face : ring.faces) {
     for (const FaceEdge& edge : adjacency.edges(face)) {
-      if (edge.sense != EdgeSense::kOpen && IsMember(ring->faces, edge.other)) {
+      if (edge.sense != EdgeSense::kOpen && IsMember(ring.faces, edge.other)) {
         continue;
       }
-      const Vec3 q = 0.5 * (edge.start + edge.end) - ring->origin_B;
-      const double z = q.dot(ring->axis_B);
-      const Vec3 radial = q - z * ring->axis_B;
-      const auto end = FindEnd(*ring, edge, z, radial);
+      const Vec3 q = 0.5 * (edge.start + edge.end) - ring.origin_B;
+      const double z = q.dot(ring.axis_B);
+      const Vec3 radial = q - z * ring.axis_B;
+      const auto end = FindEnd(ring, edge, z, radial);
       if (!end) {
         continue;
       }
       const Vec3 local = R.transpose() * radial;
       const double turn = std::atan2(local.y(), local.x()) / units::kTurn + 0.5;
-      Sector& sector =
+      EndSector& sector =
           sectors[*end][static_cast<std::size_t>(std::min(kSectors - 1.0, kSectors * turn))];
       if (sector.edge == nullptr || (*end == 1 ? z > sector.z : z < sector.z)) {
         sector = {&edge, z, radial.norm()};
       }
     }
   }
-  for (std::size_t end = 0; end < 2; ++end) {
-    RingEnd& out = ring->ends[end];
+  return sectors;
+}
+
+void CountSector(const FaceEdge& edge, RingEnd* end) {
+  ++end->sectors;
+  switch (edge.sense) {
+    case EdgeSense::kConvex:
+      ++end->convex;
+      break;
+    case EdgeSense::kConcave:
+      ++end->concave;
+      break;
+    case EdgeSense::kTangent:
+      ++end->tangent;
+      break;
+    case EdgeSense::kOpen:
+      ++end->open;
+      return;  // No face is there.
+  }
+  const auto it = std::find_if(end->neighbours.begin(), end->neighbours.end(),
+                               [&](const auto& entry) { return entry.first == edge.other; });
+  if (it == end->neighbours.end()) {
+    end->neighbours.emplace_back(edge.other, 1);
+  } else {
+    ++it->second;
+  }
+}
+
+void MeasureEnds(const FaceAdjacency& adjacency, Ring* ring) {
+  const std::array<EndSectors, 2> sectors = CollectEndSectors(adjacency, *ring);
+  for (std::size_t k = 0; k < 2; ++k) {
+    RingEnd& end = ring->ends[k];
     double radii = 0;
-    for (const Sector& sector : sectors[end]) {
-      if (sector.edge == nullptr) {
-        continue;
-      }
-      ++out.sectors;
-      radii += sector.radius;
-      const EdgeSense sense = sector.edge->sense;
-      ++(sense == EdgeSense::kConvex    ? out.convex
-         : sense == EdgeSense::kConcave ? out.concave
-         : sense == EdgeSense::kTangent ? out.tangent
-                                        : out.open);
-      if (sense == EdgeSense::kOpen) {
-        continue;
-      }
-      const auto it =
-          std::find_if(out.neighbours.begin(), out.neighbours.end(),
-                       [&](const auto& entry) { return entry.first == sector.edge->other; });
-      if (it == out.neighbours.end()) {
-        out.neighbours.emplace_back(sector.edge->other, 1);
-      } else {
-        ++it->second;
+    for (const EndSector& sector : sectors[k]) {
+      if (sector.edge != nullptr) {
+        radii += sector.radius;
+        CountSector(*sector.edge, &end);
       }
     }
-    std::sort(out.neighbours.begin(), out.neighbours.end(), [](const auto& a, const auto& b) {
+    std::sort(end.neighbours.begin(), end.neighbours.end(), [](const auto& a, const auto& b) {
       return std::pair(-a.second, a.first) < std::pair(-b.second, b.first);
     });
-    out.radius = CalcEndRadius(*ring, end, out.sectors > 0 ? radii / out.sectors : 0);
+    end.radius = CalcEndRadius(*ring, k, end.sectors > 0 ? radii / end.sectors : 0);
   }
 }
 
@@ -148,7 +164,7 @@ Ring MakeRing(const Part& part, const FaceAdjacency& adjacency, std::vector<Face
   ring.origin_B = ring.surface.origin;
   ring.axis_B = Canonical(ring.surface.axis);
   MeasureRing(part, &ring);
-  LookAtEnds(adjacency, &ring);
+  MeasureEnds(adjacency, &ring);
   return ring;
 }
 

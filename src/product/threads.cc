@@ -418,55 +418,70 @@ bool FitsHexagon(double radius, const std::vector<Hexagon>& hexagons) {
   });
 }
 
+/** Whether hexagons on a line are the part's own, not a boss on something larger: nothing of the
+ part may be farther across than a screw's head or a nut's corners and flange are.
+ @param widest  Largest radius on the line [m]. */
+bool IsWholePart(const Part& part, const Line& line, double widest) {
+  double reach = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p((corner & 1) != 0 ? part.box_B.high.x() : part.box_B.low.x(),
+                 (corner & 2) != 0 ? part.box_B.high.y() : part.box_B.low.y(),
+                 (corner & 4) != 0 ? part.box_B.high.z() : part.box_B.low.z());
+    reach = std::max(reach, DistanceToAxis(p, line.origin, line.axis));
+  }
+  constexpr double kBoxCorner = 1.7;  // Of a flange's or hexagon's box, over its own radius.
+  return part.box_B.size().norm() > 0 && reach <= kBoxCorner * widest;
+}
+
+/** Finds the bore of a nut: a hole through its hexagon. */
+std::optional<std::size_t> FindNutBore(const Part& part, const Line& line, const Hexagon& outer) {
+  for (const std::size_t i : line.features) {
+    const Feature& feature = part.features[i];
+    const double ratio = feature.radius / outer.inner_radius;
+    if (feature.kind == FeatureKind::kHole && ratio > 0.4 && ratio < 0.72 &&
+        feature.span_high - feature.span_low > 0.5 * (outer.high - outer.low)) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+/** Finds the thread of a fastener with hexagons on a line: its shank, or the bore of a nut. */
+std::optional<std::size_t> FindThreadAtHexagons(const Part& part, const Line& line,
+                                                const std::vector<Hexagon>& hexagons) {
+  const auto outer =
+      std::find_if(hexagons.begin(), hexagons.end(), [](const Hexagon& h) { return !h.is_socket; });
+  const bool has_outer = outer != hexagons.end();
+  const bool has_socket =
+      std::any_of(hexagons.begin(), hexagons.end(), [](const Hexagon& h) { return h.is_socket; });
+  double widest = has_outer ? outer->inner_radius : 0;
+  for (const std::size_t i : line.features) {
+    widest = std::max(widest, part.features[i].radius);
+  }
+  if (!IsWholePart(part, line, widest)) {
+    return std::nullopt;
+  }
+  const auto head = FindHead(part, line, hexagons);
+  const auto shank = FindShank(part, line, head);
+  if (shank && (has_socket || head) && FitsHexagon(part.features[*shank].radius, hexagons)) {
+    return *shank;
+  }
+  return has_outer && !shank ? FindNutBore(part, line, *outer) : std::nullopt;
+}
+
 /** By shape alone: hexagonal heads, sockets and nuts. Dowels and shafts have none of them. */
 void MarkByShape(const std::vector<Line>& lines, double tolerance, Part* part) {
   constexpr std::size_t kMostFaces = 400;  // Of a fastener.
   if (part->faces.size() > kMostFaces) {
     return;
   }
-  const double size = part->box_B.size().norm();
   for (const Line& line : lines) {
     const std::vector<Hexagon> hexagons = FindHexagons(*part, line, tolerance);
-    const bool has_socket =
-        std::any_of(hexagons.begin(), hexagons.end(), [](const Hexagon& h) { return h.is_socket; });
-    const auto outer = std::find_if(hexagons.begin(), hexagons.end(),
-                                    [](const Hexagon& h) { return !h.is_socket; });
-    const bool has_outer = outer != hexagons.end();
-    if (!has_socket && !has_outer) {
-      continue;
-    }
-    // The hexagon must be the part's own, not a boss on something larger: nothing of the part may
-    // be farther across than a screw's head or a nut's corners and flange are.
-    double reach = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 p((corner & 1) != 0 ? part->box_B.high.x() : part->box_B.low.x(),
-                   (corner & 2) != 0 ? part->box_B.high.y() : part->box_B.low.y(),
-                   (corner & 4) != 0 ? part->box_B.high.z() : part->box_B.low.z());
-      reach = std::max(reach, DistanceToAxis(p, line.origin, line.axis));
-    }
-    double widest = has_outer ? outer->inner_radius : 0;
-    for (const std::size_t i : line.features) {
-      widest = std::max(widest, part->features[i].radius);
-    }
-    constexpr double kBoxCorner = 1.7;  // Of a flange's or hexagon's box, over its own radius.
-    if (!(size > 0) || reach > kBoxCorner * widest) {
-      continue;
-    }
-    const auto head = FindHead(*part, line, hexagons);
-    const auto shank = FindShank(*part, line, head);
-    if (shank && (has_socket || head) && FitsHexagon(part->features[*shank].radius, hexagons)) {
-      MarkNominal(&part->features[*shank], std::nullopt);
+    const auto thread =
+        hexagons.empty() ? std::nullopt : FindThreadAtHexagons(*part, line, hexagons);
+    if (thread) {
+      MarkNominal(&part->features[*thread], std::nullopt);
       return;
-    }
-    for (const std::size_t i : line.features) {
-      Feature& feature = part->features[i];
-      const double ratio = has_outer ? feature.radius / outer->inner_radius : 0;
-      const double bore = feature.span_high - feature.span_low;
-      if (!shank && feature.kind == FeatureKind::kHole && ratio > 0.4 && ratio < 0.72 &&
-          bore > 0.5 * (outer->high - outer->low)) {
-        MarkNominal(&feature, std::nullopt);
-        return;
-      }
     }
   }
 }

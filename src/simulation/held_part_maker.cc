@@ -116,6 +116,12 @@ std::shared_ptr<const haptics::MateFaces> WithoutNeighbours(const haptics::MateF
   return std::make_shared<haptics::MateFaces>(haptics::MateFaces{faces.mating, faces.mating});
 }
 
+/** Whether a step moves a part: as its own, or with it. */
+bool IsMovedBy(const SequenceStep& step, OccurrenceId id) {
+  return id == step.occurrence ||
+         std::find(step.members.begin(), step.members.end(), id) != step.members.end();
+}
+
 }  // namespace
 
 bool IsStop(const product::Mate& mate, const Vec3& axis_W, const Vec3& insertion_W) {
@@ -333,60 +339,68 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
                                const std::vector<OccurrenceId>* target,
                                haptics::HeldPart* held) const {
   const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
-  const spatial::Pose X_BS = member == 0 ? spatial::Pose() : held->members[member - 1].X_BS;
   for (const product::MateId mate_id : model_.mates_of[id.index()]) {
     const product::Mate& drawn = model_.product->mates[mate_id.index()];
-    const ModelMate& compiled = model_.mates[mate_id.index()];
-    const bool is_a = drawn.a.occurrence == id;
-    const OccurrenceId other = is_a ? drawn.b.occurrence : drawn.a.occurrence;
-    const bool is_own =
-        other == step.occurrence ||
-        std::find(step.members.begin(), step.members.end(), other) != step.members.end();
+    const OccurrenceId other = drawn.a.occurrence == id ? drawn.b.occurrence : drawn.a.occurrence;
     const bool is_meant =
         target == nullptr || std::find(target->begin(), target->end(), other) != target->end();
-    if (is_own || !is_meant || parts_[other.index()].placement != placement) {
+    if (IsMovedBy(step, other) || !is_meant || parts_[other.index()].placement != placement) {
       continue;
     }
-    const spatial::Pose& X_WO = parts_[other.index()].X_WB;
-    const product::Mate mate =
-        TurnToStep(*model_.product, drawn, is_a ? held->insertion_W : Vec3(-held->insertion_W),
-                   model_.bodies[other.index()].X_WB_goal.q() * X_WO.q().conjugate());
-    const mates::MateConstraint constraint = mates::MakeConstraint(mate, id, X_WO);
-    const spatial::Pose& X_WB_drawn = model_.bodies[id.index()].X_WB_goal;
-    if (step.kind == SequenceStep::Kind::kAside &&
-        !HoldsAside(constraint, X_WB_drawn, GoalOf(step, X_WB_drawn))) {
-      continue;
+    if (std::optional<haptics::HeldMate> entry = MakeHeldMate(step, member, drawn, *held)) {
+      held->mates.push_back(*std::move(entry));
     }
-    haptics::HeldMate entry;
-    entry.id = mate_id;
-    entry.X_WM = constraint.X_WM;
-    entry.X_BN = X_BS * constraint.X_BN;
-    entry.member = member;
-    entry.capture = mates::MakeCaptureMate(mate, id);
-    entry.radius = mate.hole_radius;
-    entry.breadth = mate.breadth;
-    entry.has_shaft = !is_a;
-    if (mate.kind == MateKind::kPrismatic) {
-      entry.shift = (is_a ? -1 : 1) * mates::CalcDrawnShift(*model_.product, mate);
-    }
-    entry.is_stop = IsStop(mate, constraint.X_WM.q() * Vec3::UnitZ(), held->insertion_W);
-    if (mate.kind == MateKind::kFaceFace && !entry.is_stop) {
-      entry.capture.reach += step.engage_distance;  // A wall guides from where the way in begins.
-    }
-    entry.fit = compiled.fit;
-    if (mate.fit && product::IsIsoFit(mate.fit->kind)) {
-      entry.fit_kind = ToFitsKind(mate.fit->kind);
-    }
-    entry.body = contact::BodyId(other.index());
-    entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
-    entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
-    if (!step.way.empty()) {
-      // On a way that turns, what borders on the faces of a mate may be what is in the way.
-      entry.held_faces = WithoutNeighbours(*entry.held_faces);
-      entry.placed_faces = WithoutNeighbours(*entry.placed_faces);
-    }
-    held->mates.push_back(std::move(entry));
   }
+}
+
+std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const SequenceStep& step,
+                                                             std::size_t member,
+                                                             const product::Mate& drawn,
+                                                             const haptics::HeldPart& held) const {
+  const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
+  const spatial::Pose X_BS = member == 0 ? spatial::Pose() : held.members[member - 1].X_BS;
+  const ModelMate& compiled = model_.mates[drawn.id.index()];
+  const bool is_a = drawn.a.occurrence == id;
+  const OccurrenceId other = is_a ? drawn.b.occurrence : drawn.a.occurrence;
+  const spatial::Pose& X_WO = parts_[other.index()].X_WB;
+  const product::Mate mate =
+      TurnToStep(*model_.product, drawn, is_a ? held.insertion_W : Vec3(-held.insertion_W),
+                 model_.bodies[other.index()].X_WB_goal.q() * X_WO.q().conjugate());
+  const mates::MateConstraint constraint = mates::MakeConstraint(mate, id, X_WO);
+  const spatial::Pose& X_WB_drawn = model_.bodies[id.index()].X_WB_goal;
+  if (step.kind == SequenceStep::Kind::kAside &&
+      !HoldsAside(constraint, X_WB_drawn, GoalOf(step, X_WB_drawn))) {
+    return std::nullopt;
+  }
+  haptics::HeldMate entry;
+  entry.id = drawn.id;
+  entry.X_WM = constraint.X_WM;
+  entry.X_BN = X_BS * constraint.X_BN;
+  entry.member = member;
+  entry.capture = mates::MakeCaptureMate(mate, id);
+  entry.radius = mate.hole_radius;
+  entry.breadth = mate.breadth;
+  entry.has_shaft = !is_a;
+  if (mate.kind == MateKind::kPrismatic) {
+    entry.shift = (is_a ? -1 : 1) * mates::CalcDrawnShift(*model_.product, mate);
+  }
+  entry.is_stop = IsStop(mate, constraint.X_WM.q() * Vec3::UnitZ(), held.insertion_W);
+  if (mate.kind == MateKind::kFaceFace && !entry.is_stop) {
+    entry.capture.reach += step.engage_distance;  // A wall guides from where the way in begins.
+  }
+  entry.fit = compiled.fit;
+  if (mate.fit && product::IsIsoFit(mate.fit->kind)) {
+    entry.fit_kind = ToFitsKind(mate.fit->kind);
+  }
+  entry.body = contact::BodyId(other.index());
+  entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
+  entry.placed_faces = is_a ? compiled.faces_b : compiled.faces_a;
+  if (!step.way.empty()) {
+    // On a way that turns, what borders on the faces of a mate may be what is in the way.
+    entry.held_faces = WithoutNeighbours(*entry.held_faces);
+    entry.placed_faces = WithoutNeighbours(*entry.placed_faces);
+  }
+  return entry;
 }
 
 spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const {
@@ -406,39 +420,38 @@ spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const 
   return {X_WB.q(), X_WB.p() + Vec3(0, 0, lift)};
 }
 
-OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
-  const auto& steps = model_.sequence.steps;
+bool HeldPartMaker::IsMeantBefore(OccurrenceId id, OccurrenceId later) const {
   const auto& gaps = model_.sequence.gaps;
-  const auto is_before = [&](OccurrenceId id) {
-    const bool is_given_up = std::any_of(
-        gaps.begin(), gaps.end(), [id](const SequenceGap& gap) { return gap.occurrence == id; });
-    if (is_given_up) {
+  const bool is_given_up = std::any_of(
+      gaps.begin(), gaps.end(), [id](const SequenceGap& gap) { return gap.occurrence == id; });
+  if (is_given_up) {
+    return true;
+  }
+  for (const SequenceStep& step : model_.sequence.steps) {
+    if (step.occurrence == later && step.kind == SequenceStep::Kind::kInsert) {
+      return false;
+    }
+    if (step.occurrence == id && step.kind != SequenceStep::Kind::kPark) {
       return true;
     }
-    for (const SequenceStep& other : steps) {
-      if (other.occurrence == step.occurrence && other.kind == SequenceStep::Kind::kInsert) {
-        return false;
-      }
-      if (other.occurrence == id && other.kind != SequenceStep::Kind::kPark) {
-        return true;
-      }
-    }
-    return false;
-  };
-  const auto is_own = [&step](OccurrenceId id) {
-    return id == step.occurrence ||
-           std::find(step.members.begin(), step.members.end(), id) != step.members.end();
-  };
+  }
+  return false;
+}
+
+OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
   OccurrenceId missing;
   const SequenceStep* aside = FindAside(model_.sequence, step.occurrence);
   const auto is_held_by = [&](OccurrenceId other) {
     if (aside != nullptr && aside->occurrence == other) {
       return true;  // It comes back.
     }
-    if (is_own(other) || parts_[other.index()].placement == Placement::kPlaced) {
-      return !is_own(other);
+    if (IsMovedBy(step, other)) {
+      return false;
     }
-    missing = missing.is_valid() || !is_before(other) ? missing : other;
+    if (parts_[other.index()].placement == Placement::kPlaced) {
+      return true;
+    }
+    missing = missing.is_valid() || !IsMeantBefore(other, step.occurrence) ? missing : other;
     return false;
   };
   for (std::size_t i = 0; i <= step.members.size(); ++i) {

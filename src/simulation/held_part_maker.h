@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "haptics/held_part.h"
@@ -53,6 +54,14 @@ class HeldPartMaker {
                 const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
   void AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
                   const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
+  /** Makes the entry of a mate with a part in its place; none where a part that is moved aside does
+   not keep to the mate. */
+  [[nodiscard]] std::optional<haptics::HeldMate> MakeHeldMate(const SequenceStep& step,
+                                                              std::size_t member,
+                                                              const product::Mate& drawn,
+                                                              const haptics::HeldPart& held) const;
+  /** Whether the order has a part before the insertion of a later one, or has given it up. */
+  [[nodiscard]] bool IsMeantBefore(product::OccurrenceId id, product::OccurrenceId later) const;
   /** Threads of the mates that were added. */
   void AddThreads(haptics::HeldPart* held) const;
   void AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held);

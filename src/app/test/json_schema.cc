@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -55,6 +56,68 @@ class Validator {
     errors->insert(errors->end(), more.begin(), more.end());
   }
 
+  /** Whether a value is within what a keyword allows that looks at nothing below it. */
+  using Limit = bool (*)(const json& argument, const json& value);
+
+  /** Finds the limit of a keyword; null for those that are no limits. */
+  static Limit FindLimit(const std::string& keyword) {
+    static const std::map<std::string, Limit> kLimits{
+        {"enum",
+         [](const json& argument, const json& value) {
+           return std::find(argument.begin(), argument.end(), value) != argument.end();
+         }},
+        {"const", [](const json& argument, const json& value) { return value == argument; }},
+        {"minimum", [](const json& argument,
+                       const json& value) { return !value.is_number() || value >= argument; }},
+        {"maximum", [](const json& argument,
+                       const json& value) { return !value.is_number() || value <= argument; }},
+        {"exclusiveMinimum",
+         [](const json& argument, const json& value) {
+           return !value.is_number() || value > argument;
+         }},
+        {"minLength",
+         [](const json& argument, const json& value) {
+           return !value.is_string() || value.get<std::string>().size() >= argument;
+         }},
+        {"pattern",
+         [](const json& argument, const json& value) {
+           return !value.is_string() || std::regex_search(value.get<std::string>(),
+                                                          std::regex(argument.get<std::string>()));
+         }},
+        {"minItems",
+         [](const json& argument, const json& value) {
+           return !value.is_array() || value.size() >= argument;
+         }},
+        {"maxItems", [](const json& argument, const json& value) {
+           return !value.is_array() || value.size() <= argument;
+         }}};
+    const auto found = kLimits.find(keyword);
+    return found == kLimits.end() ? nullptr : found->second;
+  }
+
+  std::vector<std::string> CheckReference(const std::string& reference, const json& value,
+                                          const std::string& at) {
+    const std::size_t hash = reference.find('#');
+    const json::json_pointer pointer(reference.substr(hash + 1));
+    if (hash == 0) {
+      return Check(root_.at(pointer), value, at);
+    }
+    const json other = ReadSchema(reference.substr(0, reference.find('.')));
+    return Validator(other).Check(other.at(pointer), value, at);
+  }
+
+  static bool IsOfOneType(const json& types, const json& value) {
+    const json list = types.is_array() ? types : json::array({types});
+    return std::any_of(list.begin(), list.end(),
+                       [&](const json& type) { return IsOfType(value, type); });
+  }
+
+  static bool HasAll(const json& keys, const json& value) {
+    return !value.is_object() || std::all_of(keys.begin(), keys.end(), [&](const json& key) {
+      return value.contains(key.get<std::string>());
+    });
+  }
+
   void CheckKeyword(const json& schema, const std::string& keyword, const json& argument,
                     const json& value, const std::string& at, std::vector<std::string>* errors) {
     static const std::set<std::string> kSilent{"$schema",     "$defs",      "title",
@@ -65,52 +128,21 @@ class Validator {
                           value.dump().substr(0, 80));
       }
     };
-    if (keyword == "$ref") {
-      const auto reference = argument.get<std::string>();
-      const std::size_t hash = reference.find('#');
-      const json::json_pointer pointer(reference.substr(hash + 1));
-      if (hash == 0) {
-        Append(Check(root_.at(pointer), value, at), errors);
-      } else {
-        const json other = ReadSchema(reference.substr(0, reference.find('.')));
-        Append(Validator(other).Check(other.at(pointer), value, at), errors);
-      }
+    if (const Limit limit = FindLimit(keyword)) {
+      expect(limit(argument, value));
+    } else if (keyword == "$ref") {
+      Append(CheckReference(argument.get<std::string>(), value, at), errors);
     } else if (keyword == "type") {
-      bool is_good = false;
-      for (const json& type : argument.is_array() ? argument : json::array({argument})) {
-        is_good = is_good || IsOfType(value, type);
-      }
-      expect(is_good);
+      expect(IsOfOneType(argument, value));
       if (value.is_object()) {
         CheckObject(schema, value, at, errors);
       }
     } else if (keyword == "required") {
-      for (const json& key : argument) {
-        expect(!value.is_object() || value.contains(key.get<std::string>()));
-      }
+      expect(HasAll(argument, value));
     } else if (keyword == "items") {
       for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
         Append(Check(argument, value[i], at + "/" + std::to_string(i)), errors);
       }
-    } else if (keyword == "enum") {
-      expect(std::find(argument.begin(), argument.end(), value) != argument.end());
-    } else if (keyword == "const") {
-      expect(value == argument);
-    } else if (keyword == "minimum") {
-      expect(!value.is_number() || value >= argument);
-    } else if (keyword == "maximum") {
-      expect(!value.is_number() || value <= argument);
-    } else if (keyword == "exclusiveMinimum") {
-      expect(!value.is_number() || value > argument);
-    } else if (keyword == "minLength") {
-      expect(!value.is_string() || value.get<std::string>().size() >= argument);
-    } else if (keyword == "pattern") {
-      expect(!value.is_string() ||
-             std::regex_search(value.get<std::string>(), std::regex(argument.get<std::string>())));
-    } else if (keyword == "minItems") {
-      expect(!value.is_array() || value.size() >= argument);
-    } else if (keyword == "maxItems") {
-      expect(!value.is_array() || value.size() <= argument);
     } else if (keyword == "oneOf") {
       expect(CountMatches(argument, value, at) == 1);
     } else if (keyword == "anyOf") {

@@ -88,6 +88,99 @@ class PolarMesh {
   contact::ShapeSource source_;
 };
 
+// A shaft, or a hole in a body with an outside, whose radius is given by sector and layer.
+class PolarBody {
+ public:
+  PolarBody(const std::vector<PolarLayer>& layers, double outside)
+      : layers_(layers), outside_(outside), is_hole_(outside > 0) {}
+
+  contact::ShapeSource Make() {
+    for (std::size_t n = 0; n < layers_.size(); ++n) {
+      for (int s = 0; s < kSectors; ++s) {
+        AddWalls(layers_[n], s);
+        AddSide(layers_[n], s);
+        AddSteps(n, s);
+      }
+    }
+    return mesh_.Take();
+  }
+
+ private:
+  static double RadiusOf(const PolarLayer& layer, int s) {
+    return layer.radius[static_cast<std::size_t>(s % kSectors)];
+  }
+
+  void AddQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, bool is_turned) {
+    if (is_turned) {
+      mesh_.Quad(a, d, c, b);
+    } else {
+      mesh_.Quad(a, b, c, d);
+    }
+  }
+
+  void AddWall(const PolarLayer& layer, int s, double radius, double outward) {
+    mesh_.Face({spatial::SurfaceKind::kCylinder, Vec3::Zero(), Vec3::UnitZ(), radius, 0, outward});
+    const std::uint32_t a = mesh_.Vertex(radius, s, layer.low),
+                        b = mesh_.Vertex(radius, s + 1, layer.low),
+                        c = mesh_.Vertex(radius, s + 1, layer.high),
+                        d = mesh_.Vertex(radius, s, layer.high);
+    AddQuad(a, b, c, d, outward < 0);
+  }
+
+  void AddWalls(const PolarLayer& layer, int s) {
+    AddWall(layer, s, RadiusOf(layer, s), is_hole_ ? -1 : 1);
+    if (is_hole_) {
+      AddWall(layer, s, outside_, 1);
+    }
+  }
+
+  // A wall along the axis to the next sector; material on the side of the larger radius of a shaft.
+  void AddSide(const PolarLayer& layer, int s) {
+    const double r = RadiusOf(layer, s);
+    const double next = RadiusOf(layer, s + 1);
+    if (r == next) {
+      return;
+    }
+    const double angle = 2 * std::numbers::pi * (s + 1) / kSectors;
+    const double towards = ((r > next) == !is_hole_ ? 1 : -1);
+    mesh_.Face({spatial::SurfaceKind::kPlane, Vec3::Zero(),
+                towards * Vec3(-std::sin(angle), std::cos(angle), 0), 0, 0, 1});
+    const double inner = std::min(r, next), outer = std::max(r, next);
+    const std::uint32_t a = mesh_.Vertex(inner, s + 1, layer.low),
+                        b = mesh_.Vertex(outer, s + 1, layer.low),
+                        c = mesh_.Vertex(outer, s + 1, layer.high),
+                        d = mesh_.Vertex(inner, s + 1, layer.high);
+    AddQuad(a, b, c, d, towards > 0);
+  }
+
+  // Flat sectors to the layer below, and above the last one. Material is below r of a shaft, and
+  // between r and outside of a hole.
+  void AddSteps(std::size_t n, int s) {
+    const double r = RadiusOf(layers_[n], s);
+    const double below = n > 0 ? RadiusOf(layers_[n - 1], s) : outside_;
+    if (below != r) {
+      AddStep(s, layers_[n].low, below, r, ((r > below) == !is_hole_) ? -1 : 1);
+    }
+    if (n + 1 == layers_.size()) {
+      AddStep(s, layers_[n].high, r, outside_, 1);
+    }
+  }
+
+  // A flat sector at z between two radii, facing up or down.
+  void AddStep(int s, double z, double from, double to, double up) {
+    mesh_.Face({spatial::SurfaceKind::kPlane, Vec3(0, 0, z), Vec3(0, 0, up), 0, 0, 1});
+    const double low = std::min(from, to), high = std::max(from, to);
+    const std::uint32_t a = mesh_.Vertex(low, s, z), b = mesh_.Vertex(high, s, z),
+                        c = mesh_.Vertex(high, s + 1, z), d = mesh_.Vertex(low, s + 1, z);
+    AddQuad(a, b, c, d, up < 0);
+  }
+
+  const std::vector<PolarLayer>& layers_;
+  double outside_;
+  bool is_hole_;
+  PolarMesh mesh_;
+};
+
 }  // namespace
 
 std::shared_ptr<const contact::Shape> MakeShape(const contact::ShapeSource& source, double voxel) {
@@ -150,72 +243,7 @@ contact::ShapeSource MakeThread(double minor, double major, double pitch, double
 }
 
 contact::ShapeSource MakePolar(const std::vector<PolarLayer>& layers, double outside) {
-  PolarMesh mesh;
-  const bool is_hole = outside > 0;
-  const double back = is_hole ? -1 : 1;
-  const auto cylinder = [&](double r, double outward) {
-    return mesh.Face({spatial::SurfaceKind::kCylinder, Vec3::Zero(), Vec3::UnitZ(), r, 0, outward});
-  };
-  // Corners of a flat sector at z between two radii, facing up or down.
-  const auto step = [&](int s, double z, double from, double to, double up) {
-    mesh.Face({spatial::SurfaceKind::kPlane, Vec3(0, 0, z), Vec3(0, 0, up), 0, 0, 1});
-    const double low = std::min(from, to), high = std::max(from, to);
-    const std::uint32_t a = mesh.Vertex(low, s, z), b = mesh.Vertex(high, s, z),
-                        c = mesh.Vertex(high, s + 1, z), d = mesh.Vertex(low, s + 1, z);
-    if (up > 0) {
-      mesh.Quad(a, b, c, d);
-    } else {
-      mesh.Quad(a, d, c, b);
-    }
-  };
-  for (std::size_t n = 0; n < layers.size(); ++n) {
-    const PolarLayer& layer = layers[n];
-    const double low = layer.low, high = layer.high;
-    for (int s = 0; s < kSectors; ++s) {
-      const double r = layer.radius[static_cast<std::size_t>(s)];
-      const double next = layer.radius[static_cast<std::size_t>((s + 1) % kSectors)];
-      const auto wall = [&](double radius, double outward) {
-        cylinder(radius, outward);
-        const std::uint32_t a = mesh.Vertex(radius, s, low), b = mesh.Vertex(radius, s + 1, low),
-                            c = mesh.Vertex(radius, s + 1, high), d = mesh.Vertex(radius, s, high);
-        if (outward > 0) {
-          mesh.Quad(a, b, c, d);
-        } else {
-          mesh.Quad(a, d, c, b);
-        }
-      };
-      wall(r, back);
-      if (is_hole) {
-        wall(outside, 1);
-      }
-      if (r !=
-          next) {  // A wall along the axis; material on the side of the larger radius of a shaft.
-        const double angle = 2 * std::numbers::pi * (s + 1) / kSectors;
-        const double towards = ((r > next) == !is_hole ? 1 : -1);
-        mesh.Face({spatial::SurfaceKind::kPlane, Vec3::Zero(),
-                   towards * Vec3(-std::sin(angle), std::cos(angle), 0), 0, 0, 1});
-        const double inner = std::min(r, next), outer = std::max(r, next);
-        const std::uint32_t a = mesh.Vertex(inner, s + 1, low), b = mesh.Vertex(outer, s + 1, low),
-                            c = mesh.Vertex(outer, s + 1, high),
-                            d = mesh.Vertex(inner, s + 1, high);
-        if (towards > 0) {
-          mesh.Quad(a, d, c, b);
-        } else {
-          mesh.Quad(a, b, c, d);
-        }
-      }
-      // Where the material is: below r for a shaft, between r and outside for a hole.
-      const double none = outside;
-      const double below = n > 0 ? layers[n - 1].radius[static_cast<std::size_t>(s)] : none;
-      if (below != r) {
-        step(s, low, below, r, ((r > below) == !is_hole) ? -1 : 1);
-      }
-      if (n + 1 == layers.size()) {
-        step(s, high, r, none, 1);
-      }
-    }
-  }
-  return mesh.Take();
+  return PolarBody(layers, outside).Make();
 }
 
 Pair MakeHook(double gap) {
