@@ -288,6 +288,41 @@ double BlockBuilder::FindDistance(const NearList& list, const Vec3& p, double of
   return nearest.distance;
 }
 
+struct BlockBuilder::OctantFaces {
+  const FewFaces<kMostFaces>& few;
+  std::array<Vec3, 8> centres;
+  std::array<std::array<double, kMostFaces>, 8> away{};  // The faces' least distances.
+  std::array<bool, kMostFaces> is_near{};
+  std::size_t near{0};  // How many are.
+
+  [[nodiscard]] bool are_all_near() const { return near == few.count; }
+
+  void Mark(std::size_t f, bool is) {
+    is_near[f] = is;
+    near += is ? 1 : 0;
+  }
+};
+
+double BlockBuilder::CalcLimit(double from_mesh, double radius) const {
+  return (from_mesh + 2 * radius) * kSlack + face_margin_;
+}
+
+// Measures how far the faces are from the octants' centres, and marks those that are near for sure.
+void BlockBuilder::MeasureFaces(double limit, OctantFaces* faces) const {
+  for (std::size_t o = 0; o < 8 && !faces->are_all_near(); ++o) {
+    for (std::size_t f = 0; f < faces->few.count; ++f) {
+      if (faces->is_near[f]) {
+        continue;
+      }
+      const std::uint32_t face = faces->few.faces[f];
+      const auto exact = spatial::CalcDistance(data_.exact.faces[face], faces->centres[o]);
+      const double away = std::abs(exact.distance) - data_.exact.deviation[face];
+      faces->away[o][f] = away;
+      faces->Mark(f, !exact.is_valid || away <= limit);
+    }
+  }
+}
+
 // Takes out the faces that nowhere in the cube are the closest, nor nearly so. A ball around the
 // whole cube says little; in each of its octants a face's unbounded surface tells how near the face
 // can be. How far the mesh is from an octant's centre is looked for only where the bounds that
@@ -299,45 +334,30 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, double distance
   }
   const double radius = kHalfDiagonal * half;
   const double offset = radius * kSlack;  // Of the octants' centres.
-  const auto limit_of = [&](double from_mesh) {
-    return (from_mesh + 2 * radius) * kSlack + face_margin_;
-  };
-  const Bounds limit{limit_of(std::max(0.0, distance - offset)), limit_of(distance + offset)};
-  std::array<bool, kMostFaces> is_near{};
-  std::array<std::array<double, kMostFaces>, 8> away{};  // The faces' least distances.
-  std::size_t near = 0;
-  for (std::size_t o = 0; o < 8 && near < few.count; ++o) {
-    const Vec3 c = centre + 0.5 * half * Corner(static_cast<int>(o));
-    for (std::size_t f = 0; f < few.count; ++f) {
-      if (is_near[f]) {
-        continue;
-      }
-      const std::uint32_t face = few.faces[f];
-      const auto exact = spatial::CalcDistance(data_.exact.faces[face], c);
-      away[o][f] = std::abs(exact.distance) - data_.exact.deviation[face];
-      is_near[f] = !exact.is_valid || away[o][f] <= limit.low;
-      near += is_near[f] ? 1 : 0;
-    }
+  const Bounds limit{CalcLimit(std::max(0.0, distance - offset), radius),
+                     CalcLimit(distance + offset, radius)};
+  OctantFaces faces{few, {}};
+  for (std::size_t o = 0; o < 8; ++o) {
+    faces.centres[o] = centre + 0.5 * half * Corner(static_cast<int>(o));
   }
-  for (std::size_t o = 0; o < 8 && near < few.count; ++o) {
-    const Vec3 c = centre + 0.5 * half * Corner(static_cast<int>(o));
+  MeasureFaces(limit.low, &faces);
+  for (std::size_t o = 0; o < 8 && !faces.are_all_near(); ++o) {
     double exact_limit = -1;
     for (std::size_t f = 0; f < few.count; ++f) {
-      if (is_near[f] || away[o][f] > limit.high) {
+      if (faces.is_near[f] || faces.away[o][f] > limit.high) {
         continue;
       }
       if (exact_limit < 0) {
-        exact_limit = limit_of(FindDistance(*list, c, offset));
+        exact_limit = CalcLimit(FindDistance(*list, faces.centres[o], offset), radius);
       }
-      is_near[f] = away[o][f] <= exact_limit;
-      near += is_near[f] ? 1 : 0;
+      faces.Mark(f, faces.away[o][f] <= exact_limit);
     }
   }
-  if (near == few.count) {
+  if (faces.are_all_near()) {
     return;
   }
   const auto is_far = [&](const NearTriangle& entry) {
-    return !is_near[few.IndexOf(data_.mesh.face[entry.triangle])];
+    return !faces.is_near[few.IndexOf(data_.mesh.face[entry.triangle])];
   };
   list->erase(std::remove_if(list->begin(), list->end(), is_far), list->end());
 }
@@ -380,11 +400,82 @@ void BlockBuilder::DropHidden(const Vec3& centre, std::size_t faces, NearList* l
   list->resize(kept);
 }
 
+struct BlockBuilder::Cubes {
+  // Two in each direction. With three, lists are 2 % shorter and take twice as long.
+  static constexpr std::size_t kCount = 8;
+
+  std::array<Vec3, kCount> centres;
+  double radius{0};  // Of a ball around each.
+  double offset{0};  // Of their centres from the zone's.
+  std::array<double, kMostFaces>
+      first{};  // The least distance of each face from the zone's centre.
+  // The distance of each face from each cube's centre, once it is needed; before, less than zero.
+  std::array<std::array<double, kMostFaces>, kCount> least{};
+
+  Cubes(const Vec3& centre, double h) : radius(2 * kHalfDiagonal * h / 2) {
+    for (std::size_t o = 0; o < kCount; ++o) {
+      centres[o] = centre + 0.5 * h * Corner(static_cast<int>(o));
+      least[o].fill(-1);
+    }
+    offset = (centres[0] - centre).norm();
+    first.fill(std::numeric_limits<double>::infinity());
+  }
+};
+
+// Lists what is left, with the side of the zone that its closest point is on.
+void BlockBuilder::CollectCandidates(const Vec3& centre, const NearList& list, Cubes* cubes) {
+  candidates_.clear();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const NearTriangle& entry = list[i];
+    const std::size_t face = face_numbers_[i];
+    const Vec3 way = points_[i].q - centre;
+    const unsigned side =
+        (way.x() > 0 ? 1U : 0U) | (way.y() > 0 ? 2U : 0U) | (way.z() > 0 ? 4U : 0U);
+    candidates_.push_back({entry, face, side});
+    cubes->first[face] = std::min(cubes->first[face], entry.distance);
+  }
+}
+
+// Finds the candidates' points closest to the cube on their own side: what may be the closest is so
+// most often there.
+void BlockBuilder::FindPointsOnSide(const Cubes& cubes) {
+  NearSearch::EightTriangles eight(search_);
+  for (std::size_t i = 0; i < candidates_.size(); i += NearSearch::EightTriangles::kMost) {
+    eight.Clear();
+    for (std::size_t k = i; k < std::min(i + eight.kMost, candidates_.size()); ++k) {
+      eight.Add(candidates_[k].entry.triangle, cubes.centres[candidates_[k].side]);
+    }
+    eight.Calc();
+    for (int k = 0; k < eight.count(); ++k) {
+      points_[i + static_cast<std::size_t>(k)] = eight.PointOf(k);
+    }
+  }
+}
+
+bool BlockBuilder::MayBeClosestInCubes(std::size_t i, Cubes* cubes) const {
+  const Candidate& candidate = candidates_[i];
+  const double from_centre = cubes->first[candidate.face];
+  const Bounds bounds{std::max(0.0, from_centre - cubes->offset), from_centre + cubes->offset};
+  for (const unsigned turn : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
+    const std::size_t o = candidate.side ^ turn;
+    const Vec3& c = cubes->centres[o];
+    double* const face_least = &cubes->least[o][candidate.face];
+    const double most = (*face_least < 0 ? bounds.high : *face_least) + 2 * cubes->radius;
+    if (turn != 0 && !search_.MayReach(candidate.entry.triangle, c, most * kSlack)) {
+      continue;
+    }
+    const TrianglePoint point =
+        turn == 0 ? points_[i] : search_.ClosestOn(candidate.entry.triangle, c);
+    if (MayBeClosest(candidate, point, c, cubes->radius, bounds, face_least)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // Of each face, keeps the triangles that may be its closest somewhere in the zone, with their
 // distances from its centre, nearest first. Cubes of half the zone are looked at one by one.
 void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
-  // Two in each direction. With three, lists are 2 % shorter and take twice as long.
-  constexpr std::size_t kCubes = 8;
   const Mesh& mesh = data_.mesh;
   const FewFaces<kMostFaces> few(mesh, *list);
   if (few.count == 0 || list->size() <= few.count) {
@@ -399,59 +490,13 @@ void BlockBuilder::KeepClosest(const Vec3& centre, NearList* list) {
     face_numbers_.push_back(few.IndexOf(mesh.face[entry.triangle]));
   }
   DropHidden(centre, few.count, list);
-  candidates_.clear();
-  std::array<double, kMostFaces> first{};  // The least distance of each face from the centre.
-  first.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const NearTriangle& entry = (*list)[i];
-    const std::size_t face = face_numbers_[i];
-    const Vec3 way = points_[i].q - centre;
-    const unsigned side =
-        (way.x() > 0 ? 1U : 0U) | (way.y() > 0 ? 2U : 0U) | (way.z() > 0 ? 4U : 0U);
-    candidates_.push_back({entry, face, side});
-    first[face] = std::min(first[face], entry.distance);
-  }
-  const double radius = 2 * kHalfDiagonal * h_ / 2;
-  std::array<Vec3, kCubes> cubes;
-  for (std::size_t o = 0; o < kCubes; ++o) {
-    cubes[o] = centre + 0.5 * h_ * Corner(static_cast<int>(o));
-  }
-  const double offset = (cubes[0] - centre).norm();
-  // The distance of each face from each cube's centre, once it is needed.
-  std::array<std::array<double, kMostFaces>, kCubes> least{};
-  for (auto& of_cube : least) {
-    of_cube.fill(-1);
-  }
-  // What may be the closest is so most often in the cube on its own side.
-  NearSearch::EightTriangles eight(search_);
-  for (std::size_t i = 0; i < candidates_.size(); i += NearSearch::EightTriangles::kMost) {
-    eight.Clear();
-    for (std::size_t k = i; k < std::min(i + eight.kMost, candidates_.size()); ++k) {
-      eight.Add(candidates_[k].entry.triangle, cubes[candidates_[k].side]);
-    }
-    eight.Calc();
-    for (int k = 0; k < eight.count(); ++k) {
-      points_[i + static_cast<std::size_t>(k)] = eight.PointOf(k);
-    }
-  }
+  Cubes cubes(centre, h_);
+  CollectCandidates(centre, *list, &cubes);
+  FindPointsOnSide(cubes);
   list->clear();
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const Candidate& candidate = candidates_[i];
-    const double from_centre = first[candidate.face];
-    const Bounds bounds{std::max(0.0, from_centre - offset), from_centre + offset};
-    for (const unsigned turn : {0U, 1U, 2U, 4U, 3U, 5U, 6U, 7U}) {
-      const std::size_t o = candidate.side ^ turn;
-      double* const face_least = &least[o][candidate.face];
-      const double most = (*face_least < 0 ? bounds.high : *face_least) + 2 * radius;
-      if (turn != 0 && !search_.MayReach(candidate.entry.triangle, cubes[o], most * kSlack)) {
-        continue;
-      }
-      const TrianglePoint point =
-          turn == 0 ? points_[i] : search_.ClosestOn(candidate.entry.triangle, cubes[o]);
-      if (MayBeClosest(candidate, point, cubes[o], radius, bounds, face_least)) {
-        list->push_back(candidate.entry);
-        break;
-      }
+    if (MayBeClosestInCubes(i, &cubes)) {
+      list->push_back(candidates_[i].entry);
     }
   }
   std::sort(list->begin(), list->end(), IsNearer());

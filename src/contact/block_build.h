@@ -63,6 +63,9 @@ class BlockBuilder {
     double high;
   };
 
+  struct Cubes;        // Those of half a zone's size.
+  struct OctantFaces;  // The faces of a list as seen from the octants of a cube.
+
   [[nodiscard]] bool IsFar(const Vec3& middle);
   void BuildOctant(const Index3& low, NearSet* octant);
   void BuildZone(const Index3& zone, const BegunFilter& begun);
@@ -70,9 +73,14 @@ class BlockBuilder {
                 int zones);
   bool AgreesWithFace(const NearList& list, const Vec3& centre, double half);
   void DropFarFaces(const Vec3& centre, double half, double distance, NearList* list);
+  void MeasureFaces(double limit, OctantFaces* faces) const;
+  [[nodiscard]] double CalcLimit(double from_mesh, double radius) const;
   [[nodiscard]] double FindDistance(const NearList& list, const Vec3& p, double offset);
   void DropHidden(const Vec3& centre, std::size_t faces, NearList* list);
   void KeepClosest(const Vec3& centre, NearList* list);
+  void CollectCandidates(const Vec3& centre, const NearList& list, Cubes* cubes);
+  void FindPointsOnSide(const Cubes& cubes);
+  [[nodiscard]] bool MayBeClosestInCubes(std::size_t i, Cubes* cubes) const;
   [[nodiscard]] bool MayBeClosest(const Candidate& candidate, const TrianglePoint& point,
                                   const Vec3& c, double radius, const Bounds& bounds,
                                   double* least) const;

@@ -221,89 +221,115 @@ class Traversal {
     return s;
   }
 
+  // Points in the grid of the field. The functions that take them are parts of TestPoints.
+  struct Places {
+    Float p[3];                        // Coordinates in the field's frame.
+    alignas(32) float position[3][8];  // Likewise.
+    Float w[3];                        // Shares of the cell.
+    Int cell;                          // The node of the cell in its block.
+    Int zone;                          // Twice its number in the block.
+    Int top;                           // The block, or what stands for one.
+    Mask inside;                       // Of the grid.
+  };
+
+  [[gnu::always_inline]] inline void Locate(Places* at) const {
+    const Float zero = P::Set(0.0F);
+    const float inverse = 1.0F / field_.voxel;
+    Int block = P::SetInt(0);
+    at->cell = P::SetInt(0);
+    at->zone = P::SetInt(0);
+    at->inside = P::Less(P::Set(-1.0F), zero);
+    for (int k = 2; k >= 0; --k) {
+      const Float u = P::Mul(P::Sub(at->p[k], P::Set(field_.origin[k])), P::Set(inverse));
+      const Float end = P::Set(static_cast<float>(8 * field_.blocks[k]));
+      at->inside = P::And(at->inside, P::And(P::Less(P::Set(-0.5F), u), P::Less(u, end)));
+      const Float clamped = P::Max(P::Min(u, P::Sub(end, P::Set(0.5F))), zero);
+      const Int i = P::Truncate(clamped);
+      at->w[k] = P::Sub(clamped, P::ToFloat(i));
+      block = P::AddInt(P::MulInt(block, P::SetInt(field_.blocks[k])), P::ShiftRight3(i));
+      at->cell = P::AddInt(P::MulInt(at->cell, P::SetInt(9)), P::AndInt(i, 7));
+      at->zone = P::AddInt(P::MulInt(at->zone, P::SetInt(4)), P::AndInt(i, 6));
+    }
+    at->top = P::GatherInt(field_.top, block);
+    for (int k = 0; k < 3; ++k) {
+      P::Store(at->p[k], at->position[k]);
+    }
+  }
+
+  // Tests the points that are in blocks with nodes.
+  [[gnu::always_inline]] inline void TestInBlocks(const Places& at, const Mask& has,
+                                                  unsigned has_bits, const std::uint32_t* number) {
+    const Int b = P::MaxInt(at.top, P::SetInt(0));
+    std::int32_t code[8];
+    P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), at.zone), code);
+    std::uint32_t zones[8];
+    unsigned exact = 0;
+    for (unsigned rest = has_bits; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      zones[lane] = faces_.zones[code[lane] >> 1];
+      exact |= ((zones[lane] & ~zone::kPayload) == zone::kExact ? 1U : 0U) << lane;
+    }
+    // Where one face has the distance of each point, what is stored at the nodes is not needed.
+    const unsigned left =
+        exact == has_bits ? ScreenFaces(has_bits, zones, at.p, number, bounds_.bounds != nullptr)
+                          : has_bits;
+    if (left == 0) {
+      return;
+    }
+    const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), at.cell), at.w);
+    const Float slack = P::Gather(field_.slack, b);
+    const unsigned hits = P::Bits(P::Less(s.distance, P::Add(P::Set(margin_), slack))) & left;
+    if (bounds_.bounds != nullptr) {
+      // Unused lanes repeat a point: they change no minimum.
+      least_ = P::Least(P::Select(has, CalcBandBound(s, slack), P::Set(kNoBound)));
+    }
+    const unsigned others = left == has_bits ? Screen(hits, at.p, zones, number) : hits;
+    PushInBand(others, s, at.position, zones, number);
+  }
+
+  // Tests the points in blocks that one face has the distances of.
+  [[gnu::always_inline]] inline void TestInFaceBlocks(const Places& at, unsigned on_face,
+                                                      const std::uint32_t* number) {
+    std::int32_t code[8];
+    P::StoreInt(at.top, code);
+    std::uint32_t face[8];
+    for (unsigned rest = on_face; rest != 0; rest &= rest - 1) {
+      const int lane = __builtin_ctz(rest);
+      face[lane] = static_cast<std::uint32_t>(kTopFace - code[lane]);
+    }
+    const unsigned unsure = ScreenFaces(on_face, face, at.p, number, bounds_.bounds != nullptr);
+    least_ = unsure != 0 ? -kNoBound : least_;
+  }
+
   void TestPoints(const Float& x, const Float& y, const Float& z, const std::uint32_t* number,
                   unsigned count) {
     const unsigned used = (1U << count) - 1U;
     out_->points_tested += count;
-    Float p[3];
-    Transform(x, y, z, p);
-    const Float zero = P::Set(0.0F);
-    const float inverse = 1.0F / field_.voxel;
-    Int block = P::SetInt(0);
-    Int cell = P::SetInt(0);
-    Int zone = P::SetInt(0);  // Twice its number in the block.
-    Float w[3];
-    Mask inside = P::Less(P::Set(-1.0F), zero);
-    for (int k = 2; k >= 0; --k) {
-      const Float u = P::Mul(P::Sub(p[k], P::Set(field_.origin[k])), P::Set(inverse));
-      const Float end = P::Set(static_cast<float>(8 * field_.blocks[k]));
-      inside = P::And(inside, P::And(P::Less(P::Set(-0.5F), u), P::Less(u, end)));
-      const Float clamped = P::Max(P::Min(u, P::Sub(end, P::Set(0.5F))), zero);
-      const Int i = P::Truncate(clamped);
-      w[k] = P::Sub(clamped, P::ToFloat(i));
-      block = P::AddInt(P::MulInt(block, P::SetInt(field_.blocks[k])), P::ShiftRight3(i));
-      cell = P::AddInt(P::MulInt(cell, P::SetInt(9)), P::AndInt(i, 7));
-      zone = P::AddInt(P::MulInt(zone, P::SetInt(4)), P::AndInt(i, 6));
-    }
-    const Int top = P::GatherInt(field_.top, block);
-    const Mask has = P::And(inside, P::LessInt(P::SetInt(-1), top));
+    Places at;
+    Transform(x, y, z, at.p);
+    Locate(&at);
+    const Mask has = P::And(at.inside, P::LessInt(P::SetInt(-1), at.top));
     const unsigned has_bits = P::Bits(has) & used;
-    const Float none = P::Set(kNoBound);  // Unused lanes repeat a point: they change no minimum.
-    alignas(32) float position[3][8];
-    for (int k = 0; k < 3; ++k) {
-      P::Store(p[k], position[k]);
-    }
     if (has_bits != 0) {
-      const Int b = P::MaxInt(top, P::SetInt(0));
-      std::int32_t code[8];
-      P::StoreInt(P::AddInt(P::MulInt(b, P::SetInt(128)), zone), code);
-      std::uint32_t zones[8];
-      unsigned exact = 0;
-      for (unsigned rest = has_bits; rest != 0; rest &= rest - 1) {
-        const int lane = __builtin_ctz(rest);
-        zones[lane] = faces_.zones[code[lane] >> 1];
-        exact |= ((zones[lane] & ~zone::kPayload) == zone::kExact ? 1U : 0U) << lane;
-      }
-      // Where one face has the distance of each point, what is stored at the nodes is not needed.
-      const unsigned left = exact == has_bits
-                                ? ScreenFaces(has_bits, zones, p, number, bounds_.bounds != nullptr)
-                                : has_bits;
-      if (left != 0) {
-        const Sample s = Interpolate(P::AddInt(P::MulInt(b, P::SetInt(kBlockNodes)), cell), w);
-        const Float slack = P::Gather(field_.slack, b);
-        const unsigned hits = P::Bits(P::Less(s.distance, P::Add(P::Set(margin_), slack))) & left;
-        if (bounds_.bounds != nullptr) {
-          const Float bound = CalcBandBound(s, slack);
-          least_ = P::Least(P::Select(has, bound, none));
-        }
-        const unsigned others = left == has_bits ? Screen(hits, p, zones, number) : hits;
-        PushInBand(others, s, position, zones, number);
-      }
+      TestInBlocks(at, has, has_bits, number);
     }
-    const Mask in_face_block = P::And(inside, P::LessInt(top, P::SetInt(kTopInside)));
+    const Mask in_face_block = P::And(at.inside, P::LessInt(at.top, P::SetInt(kTopInside)));
     const unsigned on_face = P::Bits(in_face_block) & used;
     if (on_face != 0) {
-      std::int32_t code[8];
-      P::StoreInt(top, code);
-      std::uint32_t face[8];
-      for (unsigned rest = on_face; rest != 0; rest &= rest - 1) {
-        const int lane = __builtin_ctz(rest);
-        face[lane] = static_cast<std::uint32_t>(kTopFace - code[lane]);
-      }
-      const unsigned unsure = ScreenFaces(on_face, face, p, number, bounds_.bounds != nullptr);
-      least_ = unsure != 0 ? -kNoBound : least_;
+      TestInFaceBlocks(at, on_face, number);
     }
-    const unsigned solid = P::Bits(P::And(inside, P::LessInt(top, P::SetInt(kTopOutside))));
+    const unsigned solid = P::Bits(P::And(at.inside, P::LessInt(at.top, P::SetInt(kTopOutside))));
     // Outside the part and in no block is further away than `beyond`.
     const unsigned nowhere = used & ~has_bits & ~on_face;
     if (bounds_.bounds != nullptr && nowhere != 0) {
-      const Float far = P::Max(CalcFarBound(p), P::Set(field_.beyond));
+      const Float none = P::Set(kNoBound);
+      const Float far = P::Max(CalcFarBound(at.p), P::Set(field_.beyond));
       const float value = P::Least(P::Select(in_face_block, none, P::Select(has, none, far)));
       least_ = (nowhere & solid) != 0 ? -kNoBound : (value < least_ ? value : least_);
     }
     const unsigned rest = nowhere & (margin_ > field_.beyond ? ~0U : solid);
     if (rest != 0) {
-      PushCoarse(rest, solid, position, number);
+      PushCoarse(rest, solid, at.position, number);
     }
   }
 
@@ -464,6 +490,25 @@ class Traversal {
     return others;
   }
 
+  // Which of a list's faces has the distance at a point, and how far the second is behind it.
+  struct Extreme {
+    float way;
+    float second;
+    unsigned face;
+  };
+
+  [[gnu::always_inline]] static inline Extreme FindExtreme(const float (*distance)[8],
+                                                           unsigned count, float side, int lane) {
+    Extreme found{side * distance[0][lane], -3e38F, 0};
+    for (unsigned i = 1; i < count; ++i) {
+      const float to = side * distance[i][lane];
+      found.second = to > found.way ? found.way : (to > found.second ? to : found.second);
+      found.face = to > found.way ? i : found.face;
+      found.way = to > found.way ? to : found.way;
+    }
+    return found;
+  }
+
   // The lanes whose distances the surfaces do not decide, or nearly do not.
   unsigned ScreenList(const ListFaces& list, std::uint32_t number_of_list, const Seen* seen,
                       unsigned lanes, const std::uint32_t* number) {
@@ -479,15 +524,7 @@ class Traversal {
     for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
       const int lane = __builtin_ctz(rest);
       const unsigned bit = 1U << lane;
-      float way = side * distance[0][lane];
-      float second = -3e38F;
-      unsigned last = 0;
-      for (unsigned i = 1; i < list.count; ++i) {
-        const float to = side * distance[i][lane];
-        second = to > way ? way : (to > second ? to : second);
-        last = to > way ? i : last;
-        way = to > way ? to : way;
-      }
+      const auto [way, second, last] = FindExtreme(distance, list.count, side, lane);
       if (side > 0 && way >= margin_) {
         continue;
       }
