@@ -140,6 +140,24 @@ struct Found {
   std::vector<Border> of_a, of_b;  // Where the space ends, by whose surface that is.
 };
 
+/** Adds the piece of a ray that is inside both parts, where there is one, from where it enters and
+ leaves either. Returns whether there is one. */
+bool AddPiece(const RayGrid& grid, std::size_t ray, const Crossing* of_a, const Crossing* of_b,
+              Found* found) {
+  const bool begins_with_a = of_a[0].at > of_b[0].at;
+  const bool ends_with_a = of_a[1].at < of_b[1].at;
+  const Crossing& begin = begins_with_a ? of_a[0] : of_b[0];
+  const Crossing& end = ends_with_a ? of_a[1] : of_b[1];
+  if (end.at <= begin.at) {
+    return false;
+  }
+  found->volume += (end.at - begin.at) * grid.cell();
+  (begins_with_a ? found->of_a : found->of_b)
+      .push_back({grid.PointOf(ray, begin.at), begin.normal});
+  (ends_with_a ? found->of_a : found->of_b).push_back({grid.PointOf(ray, end.at), end.normal});
+  return true;
+}
+
 Found Intersect(const RayGrid& grid, const Triangles& a, const Triangles& b) {
   Found found;
   const auto rays_a = grid.Cross(a);
@@ -153,18 +171,7 @@ Found Intersect(const RayGrid& grid, const Triangles& a, const Triangles& b) {
     bool is_hit = false;
     for (std::size_t i = 0; i + 1 < of_a.size(); i += 2) {
       for (std::size_t k = 0; k + 1 < of_b.size(); k += 2) {
-        const bool begins_with_a = of_a[i].at > of_b[k].at;
-        const bool ends_with_a = of_a[i + 1].at < of_b[k + 1].at;
-        const Crossing& begin = begins_with_a ? of_a[i] : of_b[k];
-        const Crossing& end = ends_with_a ? of_a[i + 1] : of_b[k + 1];
-        if (end.at <= begin.at) {
-          continue;
-        }
-        is_hit = true;
-        found.volume += (end.at - begin.at) * grid.cell();
-        (begins_with_a ? found.of_a : found.of_b)
-            .push_back({grid.PointOf(r, begin.at), begin.normal});
-        (ends_with_a ? found.of_a : found.of_b).push_back({grid.PointOf(r, end.at), end.normal});
+        is_hit = AddPiece(grid, r, &of_a[i], &of_b[k], &found) || is_hit;
       }
     }
     found.hits += is_hit ? 1 : 0;

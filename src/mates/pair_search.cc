@@ -314,50 +314,57 @@ bool DoEngage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
 
 void PairSearch::TestPair(const Context& context, const SearchFeature& a, const MovedFeature& b,
                           PairHits* hits) {
-  const FeatureKind kind_a = a.kind;
-  const FeatureKind kind_b = b.own->kind;
-  const double cosine = a.feature->axis_B.dot(b.axis);
-  if (kind_a == FeatureKind::kPlane || kind_b == FeatureKind::kPlane) {
-    if (kind_a == kind_b && cosine <= -cos_angle_) {
+  if (a.kind == FeatureKind::kPlane || b.own->kind == FeatureKind::kPlane) {
+    if (a.kind == b.own->kind && a.feature->axis_B.dot(b.axis) <= -cos_angle_) {
       TestPlanes(context, a, b, hits);
     }
     return;
   }
-  const bool is_first = kind_a == FeatureKind::kHole || kind_a == FeatureKind::kConeSeat ||
-                        kind_a == FeatureKind::kSocket;
-  const FeatureKind seat_kind = is_first ? kind_a : kind_b;
-  const FeatureKind body_kind = is_first ? kind_b : kind_a;
-  const Feature& seat = is_first ? *a.feature : *b.own->feature;
-  const Feature& body = is_first ? *b.own->feature : *a.feature;
-  const FeatureId seat_id = is_first ? a.id : b.own->id;
-  const FeatureId body_id = is_first ? b.own->id : a.id;
-  const Pose X_SB = is_first ? context.X_AB : context.X_AB.Inverse();
-  if (seat_kind == FeatureKind::kSocket && body_kind == FeatureKind::kBall) {
-    const double most = CalcLargestPlay(limits_, context.scale, std::min(seat.radius, body.radius));
-    // A ball does not go into a socket that is smaller, but for the roughness of drawing.
-    const double least = -kSphereInterference * body.radius;
-    if ((b.origin - a.feature->origin_B).norm() < limits_.axis_distance * context.scale &&
-        seat.radius - body.radius < most && seat.radius - body.radius > least) {
-      hits->seats.push_back({MateKind::kSphereSeat, is_first, seat_id, body_id});
-    }
-    return;
+  const bool is_first = a.kind == FeatureKind::kHole || a.kind == FeatureKind::kConeSeat ||
+                        a.kind == FeatureKind::kSocket;
+  const FeatureKind seat = is_first ? a.kind : b.own->kind;
+  const FeatureKind body = is_first ? b.own->kind : a.kind;
+  if (seat == FeatureKind::kSocket && body == FeatureKind::kBall) {
+    TestBall(context, a, b, is_first, hits);
+  } else if (std::abs(a.feature->axis_B.dot(b.axis)) >= cos_angle_) {
+    TestOnAxis(context, a, b, is_first, hits);
   }
-  if (std::abs(cosine) < cos_angle_) {
-    return;
+}
+
+void PairSearch::TestBall(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                          bool is_seat_in_a, PairHits* hits) const {
+  const SearchFeature& seat = is_seat_in_a ? a : *b.own;
+  const SearchFeature& ball = is_seat_in_a ? *b.own : a;
+  const double play = seat.feature->radius - ball.feature->radius;
+  const double most =
+      CalcLargestPlay(limits_, context.scale, std::min(seat.feature->radius, ball.feature->radius));
+  // A ball does not go into a socket that is smaller, but for the roughness of drawing.
+  const double least = -kSphereInterference * ball.feature->radius;
+  if ((b.origin - a.feature->origin_B).norm() < limits_.axis_distance * context.scale &&
+      play < most && play > least) {
+    hits->seats.push_back({MateKind::kSphereSeat, is_seat_in_a, seat.id, ball.id});
   }
-  if (seat_kind == FeatureKind::kHole && body_kind == FeatureKind::kShaft) {
-    AxisHit hit{is_first, seat_id, body_id};
-    const Part& hole_part = is_first ? context.a : context.b;
-    const Part& shaft_part = is_first ? context.b : context.a;
-    if (DoEndsFit(a.arc_B, context.X_AB.q() * b.own->arc_B) && DoTeethFit(seat, body) &&
-        DoEngage(seat, body, X_SB, limits_, context.scale, &hit) &&
-        !IsAround(hole_part, seat, shaft_part, body, X_SB, hit,
+}
+
+void PairSearch::TestOnAxis(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                            bool is_seat_in_a, PairHits* hits) const {
+  const SearchFeature& seat = is_seat_in_a ? a : *b.own;
+  const SearchFeature& body = is_seat_in_a ? *b.own : a;
+  const Pose X_SB = is_seat_in_a ? context.X_AB : context.X_AB.Inverse();
+  if (seat.kind == FeatureKind::kHole && body.kind == FeatureKind::kShaft) {
+    AxisHit hit{is_seat_in_a, seat.id, body.id};
+    const Part& hole_part = is_seat_in_a ? context.a : context.b;
+    const Part& shaft_part = is_seat_in_a ? context.b : context.a;
+    if (DoEndsFit(a.arc_B, context.X_AB.q() * b.own->arc_B) &&
+        DoTeethFit(*seat.feature, *body.feature) &&
+        DoEngage(*seat.feature, *body.feature, X_SB, limits_, context.scale, &hit) &&
+        !IsAround(hole_part, *seat.feature, shaft_part, *body.feature, X_SB, hit,
                   limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);
     }
-  } else if (seat_kind == FeatureKind::kConeSeat && body_kind == FeatureKind::kTaper &&
-             IsSameCone(seat, body, X_SB, limits_, context.scale)) {
-    hits->seats.push_back({MateKind::kConeSeat, is_first, seat_id, body_id});
+  } else if (seat.kind == FeatureKind::kConeSeat && body.kind == FeatureKind::kTaper &&
+             IsSameCone(*seat.feature, *body.feature, X_SB, limits_, context.scale)) {
+    hits->seats.push_back({MateKind::kConeSeat, is_seat_in_a, seat.id, body.id});
   }
 }
 

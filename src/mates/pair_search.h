@@ -123,6 +123,11 @@ class PairSearch {
   void Search(product::PartId a, product::PartId b, const product::Pose& X_AB, PairHits* hits);
   void TestPair(const Context& context, const SearchFeature& a, const MovedFeature& b,
                 PairHits* hits);
+  void TestBall(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                bool is_seat_in_a, PairHits* hits) const;
+  /** Tests a shaft in a hole, or a taper in a seat, whose axes are parallel. */
+  void TestOnAxis(const Context& context, const SearchFeature& a, const MovedFeature& b,
+                  bool is_seat_in_a, PairHits* hits) const;
   void TestHoles(const Context& context, const std::vector<const SearchFeature*>& of_a,
                  const std::vector<MovedFeature>& of_b, PairHits* hits) const;
   void TestPlanes(const Context& context, const SearchFeature& a, const MovedFeature& b,

@@ -41,37 +41,20 @@ class BodyChain {
   /** Places all bodies that mates lead to. @param choices  Which alternative to take, at each body
    that has several; the first one beyond the end. */
   void Run(const std::vector<std::size_t>& choices) {
-    std::vector<std::optional<Candidate>> candidates(poses_.size());
-    std::vector<bool> is_stale(poses_.size(), true);
-    for (;;) {
-      std::size_t best = poses_.size();
-      for (std::size_t body = 0; body < poses_.size(); ++body) {
-        if (is_placed_[body]) {
-          continue;
-        }
-        if (is_stale[body]) {
-          candidates[body] = MakeCandidate(body);
-          is_stale[body] = false;
-        }
-        if (candidates[body] && (best == poses_.size() ||
-                                 candidates[body]->free_count < candidates[best]->free_count)) {
-          best = body;
-        }
-      }
-      if (best == poses_.size()) {
-        return;
-      }
-      const std::vector<Pose>& alternatives = candidates[best]->alternatives;
+    candidates_.assign(poses_.size(), std::nullopt);
+    is_stale_.assign(poses_.size(), true);
+    while (const auto best = FindMostBound()) {
+      const std::vector<Pose>& alternatives = candidates_[*best]->alternatives;
       std::size_t choice = 0;
       if (alternatives.size() > 1) {
         choice = counts_.size() < choices.size() ? choices[counts_.size()] : 0;
         counts_.push_back(alternatives.size());
       }
-      poses_[best] = alternatives[std::min(choice, alternatives.size() - 1)];
-      is_placed_[best] = true;
+      poses_[*best] = alternatives[std::min(choice, alternatives.size() - 1)];
+      is_placed_[*best] = true;
       for (const BodyMate& mate : problem_.mates) {
-        if (mate.a == best || mate.b == best) {
-          is_stale[mate.a] = is_stale[mate.b] = true;
+        if (mate.a == *best || mate.b == *best) {
+          is_stale_[mate.a] = is_stale_[mate.b] = true;
         }
       }
     }
@@ -95,6 +78,25 @@ class BodyChain {
     double turn{0};  // From the drawn pose [rad].
     int free_count{0};
   };
+
+  /** Finds the body that is free in the fewest directions of those that mates lead to. */
+  [[nodiscard]] std::optional<std::size_t> FindMostBound() {
+    std::optional<std::size_t> best;
+    for (std::size_t body = 0; body < poses_.size(); ++body) {
+      if (is_placed_[body]) {
+        continue;
+      }
+      if (is_stale_[body]) {
+        candidates_[body] = MakeCandidate(body);
+        is_stale_[body] = false;
+      }
+      if (candidates_[body] &&
+          (!best || candidates_[body]->free_count < candidates_[*best]->free_count)) {
+        best = body;
+      }
+    }
+    return best;
+  }
 
   [[nodiscard]] std::vector<HeldMateView> ListMates(std::size_t body) const {
     std::vector<HeldMateView> views;
@@ -239,6 +241,8 @@ class BodyChain {
   std::vector<Pose> poses_;
   std::vector<bool> is_placed_;
   std::vector<std::size_t> counts_;
+  std::vector<std::optional<Candidate>> candidates_;
+  std::vector<bool> is_stale_;  // Whether mates have come to a body since its candidate was made.
 };
 
 /** The next combination of choices; false after the last one. */

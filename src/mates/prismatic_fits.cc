@@ -176,34 +176,39 @@ bool IsHeldBetween(const WallPair& pair, const std::vector<Wall>& walls) {
   });
 }
 
+using NumberedPair = std::pair<std::size_t, WallPair>;
+
+/** Finds the wall that is nearest to another one, of those that are not taken. */
+std::optional<NumberedPair> FindNearestWall(const std::vector<Wall>& walls, std::size_t i,
+                                            bool is_inclined, const std::vector<bool>& is_taken) {
+  std::optional<NumberedPair> nearest;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const double cosine = walls[i].own_plane.nhat_W.dot(walls[k].own_plane.nhat_W);
+    const bool fits = is_inclined ? cosine <= kInclined && cosine >= -kAligned : cosine < -kAligned;
+    if (k == i || is_taken[k] || !fits) {
+      continue;
+    }
+    const auto pair = i < k ? MakePair(walls[i], walls[k]) : MakePair(walls[k], walls[i]);
+    if (pair && (!is_inclined || IsHeldBetween(*pair, walls)) &&
+        (!nearest || IsNearer(*pair, nearest->second, is_inclined))) {
+      nearest = {k, *pair};
+    }
+  }
+  return nearest;
+}
+
 /** The pairs of walls of which each is the nearest of the other. Walls that are taken are left out.
  */
 std::vector<WallPair> PairUp(const std::vector<Wall>& walls, bool is_inclined,
                              std::vector<bool>* is_taken) {
-  const auto find = [&](std::size_t i) {
-    std::optional<std::pair<std::size_t, WallPair>> nearest;
-    for (std::size_t k = 0; k < walls.size(); ++k) {
-      const double cosine = walls[i].own_plane.nhat_W.dot(walls[k].own_plane.nhat_W);
-      const bool fits =
-          is_inclined ? cosine <= kInclined && cosine >= -kAligned : cosine < -kAligned;
-      if (k == i || (*is_taken)[k] || !fits) {
-        continue;
-      }
-      const auto pair = i < k ? MakePair(walls[i], walls[k]) : MakePair(walls[k], walls[i]);
-      if (pair && (!is_inclined || IsHeldBetween(*pair, walls)) &&
-          (!nearest || IsNearer(*pair, nearest->second, is_inclined))) {
-        nearest = {k, *pair};
-      }
-    }
-    return nearest;
-  };
   std::vector<WallPair> pairs;
   for (std::size_t i = 0; i < walls.size(); ++i) {
-    const auto nearest = (*is_taken)[i] ? std::nullopt : find(i);
+    const auto nearest = (*is_taken)[i] ? std::optional<NumberedPair>()
+                                        : FindNearestWall(walls, i, is_inclined, *is_taken);
     if (!nearest || nearest->first < i) {
       continue;
     }
-    const auto back = find(nearest->first);
+    const auto back = FindNearestWall(walls, nearest->first, is_inclined, *is_taken);
     if (back && back->first == i) {
       (*is_taken)[i] = (*is_taken)[nearest->first] = true;
       pairs.push_back(nearest->second);

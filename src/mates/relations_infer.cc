@@ -217,64 +217,79 @@ void RelationSearch::AddNearestFacing(const std::vector<Placed>& of_a,
   }
 }
 
+/** The plane that each face of a part belongs to; invalid for other faces. */
+std::vector<FeatureId> FindPlanes(const Part& part) {
+  std::vector<FeatureId> plane_of(part.faces.size());
+  for (std::size_t i = 0; i < part.features.size(); ++i) {
+    if (part.features[i].kind == FeatureKind::kPlane) {
+      for (const product::FaceId face : part.features[i].faces) {
+        plane_of[face.index()] = FeatureId(i);
+      }
+    }
+  }
+  return plane_of;
+}
+
+/** Adds the straight convex edges of a face to planes of other faces with greater numbers. */
+void AddEdgesOf(const Part& part, const product::FaceAdjacency& adjacency,
+                const std::vector<FeatureId>& plane_of, std::size_t face,
+                std::vector<Edge>* edges) {
+  if (!plane_of[face].is_valid()) {
+    return;
+  }
+  std::map<FeatureId, std::pair<Vec3, Vec3>> ends;  // By the plane behind the edge.
+  const Feature& first = part.features[plane_of[face].index()];
+  for (const product::FaceEdge& edge : adjacency.edges(product::FaceId(face))) {
+    if (!edge.other.is_valid() || edge.sense != product::EdgeSense::kConvex ||
+        !plane_of[edge.other.index()].is_valid() || edge.other.index() < face) {
+      continue;
+    }
+    const FeatureId behind = plane_of[edge.other.index()];
+    const Vec3 axis = first.axis_B.cross(part.features[behind.index()].axis_B).normalized();
+    auto& [low, high] = ends.try_emplace(behind, edge.start, edge.start).first->second;
+    for (const Vec3& p : {edge.start, edge.end}) {
+      low = axis.dot(p) < axis.dot(low) ? p : low;
+      high = axis.dot(p) > axis.dot(high) ? p : high;
+    }
+  }
+  for (const auto& [other, span] : ends) {
+    Edge edge;
+    edge.half_length = 0.5 * (span.second - span.first).norm();
+    edge.side.element = ElementKind::kEdge;
+    edge.side.feature = plane_of[face];
+    edge.side.second = other;
+    edge.side.origin_B = 0.5 * (span.first + span.second);
+    edge.side.axis_B = (span.second - span.first).normalized();
+    if (2 * edge.half_length >= kLeastEdge) {
+      edges->push_back(edge);
+    }
+  }
+}
+
 /** The straight edges between two planes of a part, longest first. */
 const std::vector<Edge>& RelationSearch::EdgesOf(PartId id) {
   const auto [found, is_new] = edges_.try_emplace(id);
+  std::vector<Edge>& edges = found->second;
   const Part& part = product_.parts[id.index()];
   if (!is_new) {
-    return found->second;
+    return edges;
   }
   if (part.faces.size() > kMostEdgeFaces) {
     shortened_.insert(id);
-    return found->second;
+    return edges;
   }
-  std::vector<FeatureId> feature_of(part.faces.size());
-  for (std::size_t i = 0; i < part.features.size(); ++i) {
-    for (const product::FaceId face : part.features[i].faces) {
-      if (part.features[i].kind == FeatureKind::kPlane) {
-        feature_of[face.index()] = FeatureId(i);
-      }
-    }
-  }
+  const std::vector<FeatureId> plane_of = FindPlanes(part);
   const product::FaceAdjacency adjacency(part, kWeldTolerance);
   for (std::size_t f = 0; f < part.faces.size(); ++f) {
-    std::map<FeatureId, std::pair<Vec3, Vec3>> ends;  // By the feature behind the edge.
-    for (const product::FaceEdge& edge : adjacency.edges(product::FaceId(f))) {
-      if (!edge.other.is_valid() || edge.sense != product::EdgeSense::kConvex ||
-          !feature_of[f].is_valid() || !feature_of[edge.other.index()].is_valid() ||
-          edge.other.index() < f) {
-        continue;
-      }
-      const Feature& first = part.features[feature_of[f].index()];
-      const Feature& second = part.features[feature_of[edge.other.index()].index()];
-      const Vec3 axis = first.axis_B.cross(second.axis_B).normalized();
-      auto& [low, high] =
-          ends.try_emplace(feature_of[edge.other.index()], edge.start, edge.start).first->second;
-      for (const Vec3& p : {edge.start, edge.end}) {
-        low = axis.dot(p) < axis.dot(low) ? p : low;
-        high = axis.dot(p) > axis.dot(high) ? p : high;
-      }
-    }
-    for (const auto& [other, span] : ends) {
-      Edge edge;
-      edge.half_length = 0.5 * (span.second - span.first).norm();
-      edge.side.element = ElementKind::kEdge;
-      edge.side.feature = feature_of[f];
-      edge.side.second = other;
-      edge.side.origin_B = 0.5 * (span.first + span.second);
-      edge.side.axis_B = (span.second - span.first).normalized();
-      if (2 * edge.half_length >= kLeastEdge) {
-        found->second.push_back(edge);
-      }
-    }
+    AddEdgesOf(part, adjacency, plane_of, f, &edges);
   }
-  std::stable_sort(found->second.begin(), found->second.end(),
+  std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& a, const Edge& b) { return a.half_length > b.half_length; });
-  if (found->second.size() > limits_.features) {
+  if (edges.size() > limits_.features) {
     shortened_.insert(id);
-    found->second.resize(limits_.features);
+    edges.resize(limits_.features);
   }
-  return found->second;
+  return edges;
 }
 
 /** Edges on one line that share some of it. */

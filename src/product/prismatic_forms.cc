@@ -215,9 +215,9 @@ std::optional<std::vector<FaceId>> FindWalls(const FaceAdjacency& adjacency, con
 
 }  // namespace
 
-std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
-                            const std::vector<Ring>& partials, double tolerance) {
-  std::vector<Form> slots;
+/** Adds the slots with round ends: two arcs between the same flats, or one that is open. */
+void AddRoundSlots(const Part& part, const FaceAdjacency& adjacency,
+                   const std::vector<Ring>& partials, double tolerance, std::vector<Form>* slots) {
   std::map<std::pair<FaceId, FaceId>, std::vector<const Ring*>> by_flats;
   for (const Ring& arc : partials) {
     if (arc.is_inward && arc.turn >= kLeastHalfTurn && arc.turn <= kLargestHalfTurn) {
@@ -226,19 +226,33 @@ std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
       }
     }
   }
-  std::vector<bool> is_taken(part.faces.size(), false);
   for (const auto& [flats, arcs] : by_flats) {
     const bool is_pair =
         arcs.size() == 2 && std::abs(arcs[0]->radius() - arcs[1]->radius()) < tolerance;
     if (arcs.size() == 1 || is_pair) {
       if (auto slot = MakeSlot(part, arcs, flats)) {
-        for (const FaceId face : slot->faces) {
-          is_taken[face.index()] = true;
-        }
-        slots.push_back(std::move(*slot));
+        slots->push_back(std::move(*slot));
       }
     }
   }
+}
+
+/** Marks the faces of forms. */
+std::vector<bool> MarkFaces(const Part& part, const std::vector<Form>& forms) {
+  std::vector<bool> is_marked(part.faces.size(), false);
+  for (const Form& form : forms) {
+    for (const FaceId face : form.faces) {
+      is_marked[face.index()] = true;
+    }
+  }
+  return is_marked;
+}
+
+std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
+                            const std::vector<Ring>& partials, double tolerance) {
+  std::vector<Form> slots;
+  AddRoundSlots(part, adjacency, partials, tolerance, &slots);
+  const std::vector<bool> is_taken = MarkFaces(part, slots);
   for (std::uint32_t f = 0; f < part.faces.size(); ++f) {
     if (!is_taken[f] && IsPlane(part, FaceId(f)) && part.faces[f].triangle_count > 0) {
       if (auto channel = MakeChannel(part, adjacency, FaceId(f))) {
@@ -249,25 +263,59 @@ std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
   return slots;
 }
 
-std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, const RingSet& set,
-                              const std::vector<Ring>& partials, const std::vector<Form>& slots,
-                              RecognitionLimits* limits) {
+/** Marks the faces of rounds that look inwards: bores and fillets. */
+std::vector<bool> MarkInnerRounds(const Part& part, const std::vector<Ring>& rings,
+                                  const std::vector<Ring>& partials) {
   std::vector<bool> is_inner_round(part.faces.size(), false);
-  const auto mark = [&](const std::vector<Ring>& rings) {
-    for (const Ring& ring : rings) {
+  for (const std::vector<Ring>* list : {&rings, &partials}) {
+    for (const Ring& ring : *list) {
       for (const FaceId face : ring.faces) {
         is_inner_round[face.index()] = ring.surface.outward < 0;
       }
     }
-  };
-  mark(set.rings);
-  mark(partials);
-  std::vector<bool> is_slot(part.faces.size(), false);
-  for (const Form& slot : slots) {
-    for (const FaceId face : slot.faces) {
-      is_slot[face.index()] = true;
+  }
+  return is_inner_round;
+}
+
+/** How high a wall of a pocket goes; past a fillet the wall itself goes on. */
+double CalcWallHeight(const Part& part, const FaceAdjacency& adjacency,
+                      const std::vector<bool>& is_inner_round, FaceId wall, FaceId floor,
+                      const Vec3& centre, const Vec3& up) {
+  double height = CalcSpan(part, wall, centre, up).high;
+  for (const FaceNeighbour& next : adjacency.neighbours(wall)) {
+    if (is_inner_round[wall.index()] && next.face != floor && next.Is(EdgeSense::kTangent)) {
+      height = std::max(height, CalcSpan(part, next.face, centre, up).high);
     }
   }
+  return height;
+}
+
+Form MakePocket(const Part& part, const FaceAdjacency& adjacency,
+                const std::vector<bool>& is_inner_round, FaceId floor,
+                const std::vector<FaceId>& walls) {
+  const Vec3& up = NormalOf(part, floor);
+  const Vec3 centre = part.faces[floor.index()].box_B.centre();
+  std::vector<double> heights;
+  for (const FaceId wall : walls) {
+    heights.push_back(CalcWallHeight(part, adjacency, is_inner_round, wall, floor, centre, up));
+  }
+  std::sort(heights.begin(), heights.end());
+  Form form;
+  form.kind = FormKind::kPocket;
+  form.axis_B = -up;
+  form.depth = heights[heights.size() / 2] - CalcSpan(part, floor, centre, up).high;
+  form.origin_B = centre + form.depth * up;
+  form.faces = walls;
+  form.faces.push_back(floor);
+  return form;
+}
+
+std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, const RingSet& set,
+                              const std::vector<Ring>& partials, const std::vector<Form>& slots,
+                              RecognitionLimits* limits) {
+  const std::vector<bool> is_inner_round = MarkInnerRounds(part, set.rings, partials);
+  const std::vector<bool> is_slot = MarkFaces(part, slots);
+  const double reach = part.box_B.size().norm();
   std::vector<Form> pockets;
   int tried = 0;
   for (std::uint32_t f = 0; f < part.faces.size(); ++f) {
@@ -276,7 +324,6 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
       continue;
     }
     const auto walls = FindWalls(adjacency, set, is_inner_round, floor);
-    const double reach = part.box_B.size().norm();
     if (!walls || walls->size() < 2) {
       continue;
     }
@@ -284,30 +331,9 @@ std::vector<Form> FindPockets(const Part& part, const FaceAdjacency& adjacency, 
       limits->Add("more than 500 pockets");
       break;
     }
-    if (!IsClear(part, floor, reach)) {
-      continue;
+    if (IsClear(part, floor, reach)) {
+      pockets.push_back(MakePocket(part, adjacency, is_inner_round, floor, *walls));
     }
-    const Vec3& up = NormalOf(part, floor);
-    const Vec3 centre = part.faces[f].box_B.centre();
-    std::vector<double> heights;
-    for (const FaceId wall : *walls) {
-      heights.push_back(CalcSpan(part, wall, centre, up).high);
-      // Past a fillet the wall itself goes on.
-      for (const FaceNeighbour& next : adjacency.neighbours(wall)) {
-        if (is_inner_round[wall.index()] && next.face != floor && next.Is(EdgeSense::kTangent)) {
-          heights.back() = std::max(heights.back(), CalcSpan(part, next.face, centre, up).high);
-        }
-      }
-    }
-    std::sort(heights.begin(), heights.end());
-    Form form;
-    form.kind = FormKind::kPocket;
-    form.axis_B = -up;
-    form.depth = heights[heights.size() / 2] - CalcSpan(part, floor, centre, up).high;
-    form.origin_B = centre + form.depth * up;
-    form.faces = *walls;
-    form.faces.push_back(floor);
-    pockets.push_back(std::move(form));
   }
   return pockets;
 }

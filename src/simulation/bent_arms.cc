@@ -164,57 +164,70 @@ class ArmSearch {
     return (part_.mesh.vertices[vertex] - arm.root_B).dot(arm.axis_B) > kBeyondRoot * arm.length;
   }
 
-  /** Marks the corners of the mesh that hang together beyond the root with those of a face. */
-  std::set<std::uint32_t> CollectFaces(const BentArm& arm, std::uint32_t face, const Vec3& p_B) {
-    is_arm_.assign(corner_count_, false);
-    const auto& triangles = part_.mesh.triangles;
-    const auto& vertices = part_.mesh.vertices;
+  /** Finds the corner beyond the root that is nearest to a place on a face; of all faces where the
+   part has no such one. */
+  [[nodiscard]] std::optional<std::uint32_t> FindCornerBeyond(const BentArm& arm,
+                                                              std::uint32_t face,
+                                                              const Vec3& p_B) const {
     std::size_t begin = 0;
-    std::size_t end = triangles.size();
+    std::size_t end = part_.mesh.triangles.size();
     if (face < part_.faces.size()) {
       begin = part_.faces[face].first_triangle;
       end = begin + part_.faces[face].triangle_count;
     }
     double nearest = std::numeric_limits<double>::infinity();
-    std::uint32_t seed = 0;
+    std::optional<std::uint32_t> corner;
     for (std::size_t t = begin; t < end; ++t) {
-      for (const std::uint32_t v : triangles[t]) {
-        const double distance = (vertices[v] - p_B).norm();
+      for (const std::uint32_t v : part_.mesh.triangles[t]) {
+        const double distance = (part_.mesh.vertices[v] - p_B).norm();
         if (IsBeyond(arm, v) && distance < nearest) {
           nearest = distance;
-          seed = corners_[v];
+          corner = corners_[v];
         }
       }
     }
-    if (std::isinf(nearest)) {
-      return {};
-    }
+    return corner;
+  }
+
+  [[nodiscard]] bool HasCornerOfArm(const std::array<std::uint32_t, 3>& triangle) const {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [this](std::uint32_t v) { return is_arm_[corners_[v]]; });
+  }
+
+  /** Marks the corners of the mesh that hang together with one beyond the root. */
+  void MarkArm(const BentArm& arm, std::uint32_t seed) {
     is_arm_[seed] = true;
     for (bool has_grown = true; has_grown;) {
       has_grown = false;
-      for (const auto& triangle : triangles) {
-        const auto belongs = [&](std::uint32_t v) { return is_arm_[corners_[v]]; };
-        if (std::none_of(triangle.begin(), triangle.end(), belongs)) {
+      for (const auto& triangle : part_.mesh.triangles) {
+        if (!HasCornerOfArm(triangle)) {
           continue;
         }
         for (const std::uint32_t v : triangle) {
-          if (!belongs(v) && IsBeyond(arm, v)) {
+          if (!is_arm_[corners_[v]] && IsBeyond(arm, v)) {
             is_arm_[corners_[v]] = true;
             has_grown = true;
           }
         }
       }
     }
+  }
+
+  /** Lists the faces that hang together beyond the root with a place on a face. */
+  std::set<std::uint32_t> CollectFaces(const BentArm& arm, std::uint32_t face, const Vec3& p_B) {
+    is_arm_.assign(corner_count_, false);
+    const std::optional<std::uint32_t> seed = FindCornerBeyond(arm, face, p_B);
+    if (!seed) {
+      return {};
+    }
+    MarkArm(arm, *seed);
     std::set<std::uint32_t> faces;
     for (std::uint32_t f = 0; f < part_.faces.size(); ++f) {
       const product::Face& of = part_.faces[f];
-      for (std::size_t t = of.first_triangle; t < of.first_triangle + of.triangle_count; ++t) {
-        const auto& triangle = triangles[t];
-        if (std::any_of(triangle.begin(), triangle.end(),
-                        [&](std::uint32_t v) { return is_arm_[corners_[v]]; })) {
-          faces.insert(f);
-          break;
-        }
+      const auto begin = part_.mesh.triangles.begin() + of.first_triangle;
+      if (std::any_of(begin, begin + of.triangle_count,
+                      [this](const auto& triangle) { return HasCornerOfArm(triangle); })) {
+        faces.insert(f);
       }
     }
     return faces;

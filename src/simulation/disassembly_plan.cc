@@ -97,6 +97,17 @@ class DisassemblyPlanner {
   /** Set that PlanAll would take out before the target, without those that are not needed. */
   [[nodiscard]] PartSet FindSetInOrder();
   [[nodiscard]] std::string ExplainStuck(OccurrenceId id);
+  /** Lists the parts that can come out, of a part and all that are in its way and in theirs. */
+  [[nodiscard]] PartSet ListFree(OccurrenceId id);
+
+  /** What keeps a part in on a way out; null: nothing does on any. */
+  struct Wall {
+    const WayOut* way{nullptr};
+    const Obstacle* obstacle{nullptr};
+  };
+
+  /** Finds what keeps a part in where it comes farthest, besides parts that are free. */
+  [[nodiscard]] Wall FindWall(OccurrenceId part, const PartSet& free);
 
   const Model& model_;
   const DisassemblyOptions& options_;
@@ -365,9 +376,8 @@ void DisassemblyPlanner::PlanTarget(DisassemblyPlan* plan) {
   }
 }
 
-std::string DisassemblyPlanner::ExplainStuck(OccurrenceId id) {
-  // The parts that can come out, of all that are in its way and in theirs.
-  PartSet all{id};
+PartSet DisassemblyPlanner::ListFree(OccurrenceId id) {
+  PartSet all{id};  // With all that are in its way, and in theirs.
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (const WayOut& way : WaysOf(all[i])) {
       std::copy_if(way.parts.begin(), way.parts.end(), std::back_inserter(all),
@@ -382,34 +392,41 @@ std::string DisassemblyPlanner::ExplainStuck(OccurrenceId id) {
     free.push_back(part);
   }
   std::sort(free.begin(), free.end());
-  std::string text;
-  PartSet told;
-  for (OccurrenceId part = id; part.is_valid();) {
-    told.insert(std::upper_bound(told.begin(), told.end(), part), part);
-    const WayOut* best = nullptr;
-    const Obstacle* wall = nullptr;
-    for (const WayOut& way : WaysOf(part)) {
-      for (const Obstacle& obstacle : way.obstacles) {
-        // Of each way the first part that stays; of all ways the one that leads farthest to it.
-        if (!Contains(free, obstacle.occurrence)) {
-          if (wall == nullptr || obstacle.travelled > wall->travelled) {
-            best = &way;
-            wall = &obstacle;
-          }
-          break;
-        }
-      }
+  return free;
+}
+
+DisassemblyPlanner::Wall DisassemblyPlanner::FindWall(OccurrenceId part, const PartSet& free) {
+  Wall wall;
+  for (const WayOut& way : WaysOf(part)) {
+    // Of each way the first part that stays; of all ways the one that leads farthest to it.
+    const auto first = std::find_if(
+        way.obstacles.begin(), way.obstacles.end(),
+        [&](const Obstacle& obstacle) { return !Contains(free, obstacle.occurrence); });
+    if (first != way.obstacles.end() &&
+        (wall.obstacle == nullptr || first->travelled > wall.obstacle->travelled)) {
+      wall = {&way, &*first};
     }
-    if (wall == nullptr) {
+  }
+  return wall;
+}
+
+std::string DisassemblyPlanner::ExplainStuck(OccurrenceId id) {
+  const PartSet free = ListFree(id);
+  std::string text;
+  PartSet explained;
+  for (OccurrenceId part = id; part.is_valid();) {
+    explained.insert(std::upper_bound(explained.begin(), explained.end(), part), part);
+    const Wall wall = FindWall(part, free);
+    if (wall.obstacle == nullptr) {
       return text;
     }
-    const OccurrenceId next = wall->occurrence;
+    const OccurrenceId next = wall.obstacle->occurrence;
     text += (text.empty() ? "" : ", which ") +
-            extraction_.ExplainObstacle(part, *wall, best->direction);
+            extraction_.ExplainObstacle(part, *wall.obstacle, wall.way->direction);
     if (next == base_) {
       return text + ", the base, which stays in the fixture";
     }
-    part = Contains(told, next) ? OccurrenceId() : next;
+    part = Contains(explained, next) ? OccurrenceId() : next;
   }
   return text + ": each of them waits for the other";
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,16 @@
 namespace hvas::simulation {
 
 using product::OccurrenceId;
+
+namespace {
+
+/** Two values, the second one first unless they are in order. */
+template <typename T>
+std::pair<const T&, const T&> InOrder(bool is_in_order, const T& a, const T& b) {
+  return is_in_order ? std::pair<const T&, const T&>(a, b) : std::pair<const T&, const T&>(b, a);
+}
+
+}  // namespace
 
 PartRun::PartRun(Simulation* simulation, Sink* downstream)
     : dropped_(simulation->model().bodies.size()),
@@ -148,53 +160,72 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) {
   return task;
 }
 
+std::optional<bool> PartRun::FindMoved(const SequenceStep& step, OccurrenceId a,
+                                       OccurrenceId b) const {
+  const auto is_moved = [&step](OccurrenceId id) {
+    return id == step.occurrence ||
+           std::find(step.members.begin(), step.members.end(), id) != step.members.end();
+  };
+  const bool is_a = is_moved(a);
+  if (is_a == is_moved(b) || physics().placement(is_a ? b : a) != Placement::kPlaced) {
+    return std::nullopt;
+  }
+  return is_a;
+}
+
 std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step) const {
-  std::vector<OccurrenceId> moved{step.occurrence};
-  moved.insert(moved.end(), step.members.begin(), step.members.end());
-  const auto is_moved = [&moved](OccurrenceId id) {
-    return std::find(moved.begin(), moved.end(), id) != moved.end();
-  };
-  const auto is_met = [&](OccurrenceId own, OccurrenceId other) {
-    return is_moved(own) && !is_moved(other) && physics().placement(other) == Placement::kPlaced;
-  };
   std::vector<PartAllowance> allowances;
   for (const DrawnOverlap& overlap : model().sequence.overlaps) {
-    const bool is_a = is_met(overlap.a, overlap.b);
-    if (is_a || is_met(overlap.b, overlap.a)) {
-      allowances.push_back({PartAllowance::Kind::kDrawn,
-                            is_a ? overlap.a : overlap.b,
-                            is_a ? overlap.b : overlap.a,
-                            overlap.depth,
-                            overlap.is_beyond,
-                            is_a ? overlap.faces_a : overlap.faces_b,
-                            is_a ? overlap.faces_b : overlap.faces_a,
-                            {},
-                            {},
-                            {}});
+    if (const auto is_a = FindMoved(step, overlap.a, overlap.b)) {
+      PartAllowance allowance;
+      allowance.kind = PartAllowance::Kind::kDrawn;
+      std::tie(allowance.own, allowance.other) = InOrder(*is_a, overlap.a, overlap.b);
+      std::tie(allowance.own_faces, allowance.other_faces) =
+          InOrder(*is_a, overlap.faces_a, overlap.faces_b);
+      allowance.depth = overlap.depth;
+      allowance.is_beyond = overlap.is_beyond;
+      allowances.push_back(std::move(allowance));
     }
   }
   for (const GivingPair& give : model().sequence.gives) {
-    const bool is_own = is_met(give.flexible, give.other);
-    if (is_own || is_met(give.other, give.flexible)) {
-      const OccurrenceId own = is_own ? give.flexible : give.other;
-      const OccurrenceId other = is_own ? give.other : give.flexible;
-      allowances.push_back(
-          {PartAllowance::Kind::kGive,
-           own,
-           other,
-           std::max(give.width, give.depth),
-           false,
-           {},
-           {},
-           give.flexible,
-           give.kind,
-           give.curve ? haptics::CalcGivingPeak(*give.curve) : haptics::GivingPeak()});
+    if (const auto is_own = FindMoved(step, give.flexible, give.other)) {
+      PartAllowance allowance;
+      allowance.kind = PartAllowance::Kind::kGive;
+      std::tie(allowance.own, allowance.other) = InOrder(*is_own, give.flexible, give.other);
+      allowance.depth = std::max(give.width, give.depth);
+      allowance.flexible = give.flexible;
+      allowance.flexible_kind = give.kind;
+      if (give.curve) {
+        allowance.force = haptics::CalcGivingPeak(*give.curve);
+      }
+      allowances.push_back(std::move(allowance));
     }
   }
   return allowances;
 }
 
+std::string PartRun::DescribeAllowance(const PartAllowance& allowance, bool is_beyond,
+                                       const std::string& more) const {
+  if (allowance.kind == PartAllowance::Kind::kDrawn) {
+    const std::string beyond =
+        is_beyond ? fmt::format(" of up to {:.1f} mm more than drawn", units::ToMm(kBeyondDrawn))
+                  : "";
+    return fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn", beyond,
+                       units::ToMm(allowance.depth), PathOf(allowance.other), more);
+  }
+  const std::string who =
+      allowance.flexible == allowance.own ? "" : ": " + PathOf(allowance.flexible);
+  const std::string force =
+      allowance.force.in > 0
+          ? fmt::format(", {:.3g} N in, {:.3g} N out", allowance.force.in, allowance.force.out)
+          : "";
+  return fmt::format("goes in by giving {:.2f} mm ({}{}{})", units::ToMm(allowance.depth),
+                     product::ToString(allowance.flexible_kind), who, force);
+}
+
 std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowances) const {
+  const bool is_beyond = std::any_of(allowances.begin(), allowances.end(),
+                                     [](const PartAllowance& a) { return a.is_beyond; });
   std::string text;
   for (const PartAllowance::Kind kind : {PartAllowance::Kind::kDrawn, PartAllowance::Kind::kGive}) {
     const PartAllowance* deepest = nullptr;
@@ -205,29 +236,10 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
         deepest = deepest == nullptr || allowance.depth > deepest->depth ? &allowance : deepest;
       }
     }
-    if (deepest == nullptr) {
-      continue;
+    if (deepest != nullptr) {
+      const std::string more = count > 1 ? fmt::format(" and {} more", count - 1) : "";
+      text += (text.empty() ? "" : "; ") + DescribeAllowance(*deepest, is_beyond, more);
     }
-    const std::string more = count > 1 ? fmt::format(" and {} more", count - 1) : "";
-    text += text.empty() ? "" : "; ";
-    if (kind == PartAllowance::Kind::kDrawn) {
-      const bool is_beyond = std::any_of(allowances.begin(), allowances.end(),
-                                         [](const PartAllowance& a) { return a.is_beyond; });
-      const std::string beyond =
-          is_beyond ? fmt::format(" of up to {:.1f} mm more than drawn", units::ToMm(kBeyondDrawn))
-                    : "";
-      text += fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn", beyond,
-                          units::ToMm(deepest->depth), PathOf(deepest->other), more);
-      continue;
-    }
-    const std::string who =
-        deepest->flexible == deepest->own ? "" : ": " + PathOf(deepest->flexible);
-    const std::string force =
-        deepest->force.in > 0
-            ? fmt::format(", {:.3g} N in, {:.3g} N out", deepest->force.in, deepest->force.out)
-            : "";
-    text += fmt::format("goes in by giving {:.2f} mm ({}{}{})", units::ToMm(deepest->depth),
-                        product::ToString(deepest->flexible_kind), who, force);
   }
   return text;
 }

@@ -137,6 +137,10 @@ class PartRun : public Sink {
   [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
   /** Lists what moves in a step is allowed with the parts that are in their places. */
   [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(const SequenceStep& step) const;
+  /** Finds which of two parts a step moves while the other one is in its place: whether it is the
+   first; none where it is not so. */
+  [[nodiscard]] std::optional<bool> FindMoved(const SequenceStep& step, product::OccurrenceId a,
+                                              product::OccurrenceId b) const;
   /** Lists what moves in a step presses together in its place. */
   [[nodiscard]] std::vector<PressedPair> ListPresses(const SequenceStep& step) const;
   /** Describes what is pressed hardest, as in "presses spring together by 3.00 mm: 82.5 N (G d^4 /
@@ -144,6 +148,8 @@ class PartRun : public Sink {
   [[nodiscard]] std::string DescribePresses(const std::vector<PressedPair>& presses) const;
   /** Names the deepest allowance of each kind, with its depth. */
   [[nodiscard]] std::string DescribeAllowances(const std::vector<PartAllowance>& allowances) const;
+  [[nodiscard]] std::string DescribeAllowance(const PartAllowance& allowance, bool is_beyond,
+                                              const std::string& more) const;
   /** Counts the parts in their place that hold what moves in a step, where it is to go. */
   [[nodiscard]] std::size_t CountNeighboursInPlace(const SequenceStep& step) const;
   /** Names the part that was pressed hardest in a hold, with the force. */

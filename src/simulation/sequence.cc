@@ -387,23 +387,24 @@ std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> ove
   constexpr double kRoom = 60e-6;  // [m] that is left to a part that gives: a choice.
   std::vector<contact::Allowance> allowances;
   for (const GivingPair& give : gives) {
-    if (give.flexible == id || give.other == id) {
-      const OccurrenceId other = give.flexible == id ? give.other : give.flexible;
-      double depth = give.depth + kRoom;
-      for (const DrawnOverlap& overlap : overlaps) {
-        depth = overlap.Joins(id, other) ? std::max(depth, overlap.allowed) : depth;
-      }
-      allowances.push_back({contact::BodyId(other.index()), depth, {}, {}});
+    if (give.flexible != id && give.other != id) {
+      continue;
     }
+    const OccurrenceId other = give.flexible == id ? give.other : give.flexible;
+    double depth = give.depth + kRoom;
+    for (const DrawnOverlap& overlap : overlaps) {
+      depth = overlap.Joins(id, other) ? std::max(depth, overlap.allowed) : depth;
+    }
+    allowances.push_back({contact::BodyId(other.index()), depth, {}, {}});
   }
   for (const DrawnOverlap& overlap : overlaps) {
-    if (overlap.answer == DrawnOverlap::Answer::kAllowance &&
-        (overlap.a == id || overlap.b == id)) {
-      const bool is_a = overlap.a == id;
-      allowances.push_back({contact::BodyId((is_a ? overlap.b : overlap.a).index()),
-                            overlap.allowed, is_a ? overlap.passing_a : overlap.passing_b,
-                            is_a ? overlap.passing_b : overlap.passing_a});
+    const bool is_a = overlap.a == id;
+    if (overlap.answer != DrawnOverlap::Answer::kAllowance || (!is_a && overlap.b != id)) {
+      continue;
     }
+    allowances.push_back({contact::BodyId((is_a ? overlap.b : overlap.a).index()), overlap.allowed,
+                          is_a ? overlap.passing_a : overlap.passing_b,
+                          is_a ? overlap.passing_b : overlap.passing_a});
   }
   return allowances;
 }

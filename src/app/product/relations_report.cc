@@ -220,49 +220,67 @@ void PrintSurfaceRelations(const Product& product, const Selection& selection, b
 
 }  // namespace
 
+Json ListIdentities(const Product& product, const Selection& selection) {
+  Json identities = Json::array();
+  for (const product::Subassembly& subassembly : product.subassemblies) {
+    if (!subassembly.identity.is_empty()) {
+      identities.push_back(
+          ToJson(subassembly.identity, "subassembly", subassembly.id.value(), subassembly.name));
+    }
+  }
+  for (const Part& part : product.parts) {
+    if (selection.Has(part.id) && !part.identity.is_empty()) {
+      identities.push_back(ToJson(part.identity, "part", part.id.value(), part.name));
+    }
+  }
+  return identities;
+}
+
+Json ListRelations(const Product& product, const Selection& selection) {
+  Json relations = Json::array();
+  for (const Relation& relation : product.relations) {
+    if (IsSelected(relation, selection)) {
+      relations.push_back(ToJson(relation));
+    }
+  }
+  return relations;
+}
+
+Json ToJson(const Part& part, const SurfaceRelation& relation) {
+  Json features = Json::array();
+  Json faces = Json::array();
+  for (const product::FeatureId id : relation.features) {
+    features.push_back(id.value());
+    faces.push_back(FacesOf(part, id));
+  }
+  return {{"part", part.id.value()},
+          {"kind", relation.kind},
+          {"features", std::move(features)},
+          {"faces", std::move(faces)}};
+}
+
+Json ListSurfaceRelations(const Product& product, const Selection& selection) {
+  Json list = Json::array();
+  for (const Part& part : product.parts) {
+    if (selection.Has(part.id)) {
+      for (const SurfaceRelation& relation : ListSurfaceRelations(part)) {
+        list.push_back(ToJson(part, relation));
+      }
+    }
+  }
+  return list;
+}
+
 void AddRequestedSections(const Product& product, const Selection& selection, Json* json) {
   if (selection.Has(Section::kIdentity)) {
     (*json)["header"] = ToJson(product.header);
-    Json& identities = (*json)["identities"] = Json::array();
-    for (const product::Subassembly& subassembly : product.subassemblies) {
-      if (!subassembly.identity.is_empty()) {
-        identities.push_back(
-            ToJson(subassembly.identity, "subassembly", subassembly.id.value(), subassembly.name));
-      }
-    }
-    for (const Part& part : product.parts) {
-      if (selection.Has(part.id) && !part.identity.is_empty()) {
-        identities.push_back(ToJson(part.identity, "part", part.id.value(), part.name));
-      }
-    }
+    (*json)["identities"] = ListIdentities(product, selection);
   }
   if (selection.Has(Section::kRelations)) {
-    Json& relations = (*json)["relations"] = Json::array();
-    for (const Relation& relation : product.relations) {
-      if (IsSelected(relation, selection)) {
-        relations.push_back(ToJson(relation));
-      }
-    }
+    (*json)["relations"] = ListRelations(product, selection);
   }
   if (selection.Has(Section::kSurfaces)) {
-    Json& list = (*json)["surface_relations"] = Json::array();
-    for (const Part& part : product.parts) {
-      if (!selection.Has(part.id)) {
-        continue;
-      }
-      for (const SurfaceRelation& relation : ListSurfaceRelations(part)) {
-        Json features = Json::array();
-        Json faces = Json::array();
-        for (const product::FeatureId id : relation.features) {
-          features.push_back(id.value());
-          faces.push_back(FacesOf(part, id));
-        }
-        list.push_back({{"part", part.id.value()},
-                        {"kind", relation.kind},
-                        {"features", std::move(features)},
-                        {"faces", std::move(faces)}});
-      }
-    }
+    (*json)["surface_relations"] = ListSurfaceRelations(product, selection);
   }
 }
 

@@ -75,24 +75,28 @@ double PrefixScale(std::string_view prefix) {
   return 1;
 }
 
+Unit MakeSiUnit(const StepText& text, const StepRecord& record) {
+  std::string prefix;
+  std::string name;
+  for (const StepValue& value : record.values) {
+    if (value.kind == Kind::kEnum) {
+      prefix = std::exchange(name, value.text);
+    }
+  }
+  const Quantity quantity = name == "METRE"    ? Quantity::kLength
+                            : name == "RADIAN" ? Quantity::kAngle
+                                               : Quantity::kOther;
+  const double scale = quantity == Quantity::kLength ? text.length_scale() : 1;
+  return {scale * PrefixScale(prefix), quantity};
+}
+
 std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) {
   if (depth > kMaxUnitDepth) {
     return std::nullopt;
   }
   for (const StepRecord& record : text.Find(id)) {
     if (record.name == "SI_UNIT") {
-      std::string prefix;
-      std::string name;
-      for (const StepValue& value : record.values) {
-        if (value.kind == Kind::kEnum) {
-          prefix = std::exchange(name, value.text);
-        }
-      }
-      const Quantity quantity = name == "METRE"    ? Quantity::kLength
-                                : name == "RADIAN" ? Quantity::kAngle
-                                                   : Quantity::kOther;
-      const double scale = quantity == Quantity::kLength ? text.length_scale() : 1;
-      return Unit{scale * PrefixScale(prefix), quantity};
+      return MakeSiUnit(text, record);
     }
     const bool is_converted = record.name.find("CONVERSION_BASED_UNIT") == 0;
     if (is_converted && record.values.size() > 1) {

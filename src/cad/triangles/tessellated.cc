@@ -71,6 +71,10 @@ class TessellationReader {
   void AddFace(Id face, const StepRecord& record, const ShapeUnits& units,
                std::optional<Color> color, TriangleSoup* soup);
   [[nodiscard]] const std::vector<Vec3>& PointsOf(Id coordinates);
+  /** Fails where products are used more often than there may be parts. */
+  [[nodiscard]] Result<void> CheckUses(const std::vector<Id>& roots) const;
+  /** Reports what was left out, and what such a file lacks. */
+  void ReportLimits() const;
   [[nodiscard]] std::optional<Color> ColorOf(Id item) const;
 
   const StepText& text_;
@@ -211,6 +215,11 @@ std::optional<Color> TessellationReader::ColorOf(Id item) const {
   }
   constexpr std::size_t kMostSteps = 64;  // Entities on the way to a colour: a choice.
   std::vector<Id> queue{style->second};
+  const auto follow = [&](const StepValue& value) {
+    if (value.reference > 0 && value.reference != item) {
+      queue.push_back(value.reference);
+    }
+  };
   for (std::size_t i = 0; i < queue.size() && i < kMostSteps; ++i) {
     for (const StepRecord& record : text_.Find(queue[i])) {
       if (record.name == "COLOUR_RGB" && record.values.size() > 3) {
@@ -220,14 +229,8 @@ std::optional<Color> TessellationReader::ColorOf(Id item) const {
         return Color{part(1), part(2), part(3)};
       }
       for (const StepValue& value : record.values) {
-        if (value.reference > 0 && value.reference != item) {
-          queue.push_back(value.reference);
-        }
-        for (const StepValue& inner : value.items) {
-          if (inner.reference > 0 && inner.reference != item) {
-            queue.push_back(inner.reference);
-          }
-        }
+        follow(value);
+        std::for_each(value.items.begin(), value.items.end(), follow);
       }
     }
   }
@@ -444,15 +447,7 @@ Result<void> TessellationReader::Read() {
     const std::string name = NameOf(roots.front());
     product_->name = name.empty() ? product_->name : name;
   }
-  Uses uses;
-  for (const auto& [user, list] : uses_) {
-    for (const Use& use : list) {
-      uses[user].push_back(use.child);
-    }
-  }
-  if (const auto checked =
-          CheckPlaced(CountPlaced(uses, roots), options_.max_parts, product_->source);
-      !checked) {
+  if (auto checked = CheckUses(roots); !checked) {
     return checked;
   }
   ProductTree tree(product_);
@@ -472,6 +467,21 @@ Result<void> TessellationReader::Read() {
     return Fail(ErrorCode::kUnreadable, "the file has no triangles", product_->source,
                 "export the parts as solids");
   }
+  ReportLimits();
+  return {};
+}
+
+Result<void> TessellationReader::CheckUses(const std::vector<Id>& roots) const {
+  Uses uses;
+  for (const auto& [user, list] : uses_) {
+    for (const Use& use : list) {
+      uses[user].push_back(use.child);
+    }
+  }
+  return CheckPlaced(CountPlaced(uses, roots), options_.max_parts, product_->source);
+}
+
+void TessellationReader::ReportLimits() const {
   if (has_deep_products_ || has_deep_shells_) {
     diagnostics_->Warn("limit-depth", product_->source,
                        fmt::format("{} nested too deep are left out",
@@ -484,7 +494,6 @@ Result<void> TessellationReader::Read() {
                      "the file has triangles and no solids; surfaces are those given in the file "
                      "or fitted to the triangles",
                      "export the product with exact geometry for exact areas and volumes");
-  return {};
 }
 
 }  // namespace
