@@ -108,6 +108,7 @@ class ToleranceReader {
   void IndexEntity(EntityId id, const StepEntity& entity);
   void IndexRecord(const StepRecord& record);
   void ReadDimension(EntityId id, const StepEntity& entity);
+  [[nodiscard]] std::vector<EntityId> ListItems(EntityId representation) const;
   bool ReadSizes(EntityId representation, Dimension* dimension);
   void ReadLimits(EntityId range, Dimension* dimension);
   void ReadGeometric(EntityId id, const StepEntity& entity);
@@ -120,6 +121,9 @@ class ToleranceReader {
   template <typename T>
   void Distribute(std::vector<Found<T>>* found, std::vector<T> Part::*member);
   void CheckSizes(Part* part);
+  /** Converts a dimension whose value is that of a face in another unit, and reports one that is
+   another value. @param sizes  Of its faces [m]. */
+  void CheckSize(const std::string& part, const std::vector<double>& sizes, Dimension* dimension);
   void Report();
 
   const StepText& text_;
@@ -259,10 +263,16 @@ void ToleranceReader::ReadDimension(EntityId id, const StepEntity& entity) {
   }
 }
 
-bool ToleranceReader::ReadSizes(EntityId representation, Dimension* dimension) {
-  std::optional<double> nominal;
-  std::optional<double> upper;
-  std::optional<double> lower;
+/** Reads a fit in a note; in a note "M8" is a thread. */
+void ReadFitNote(const StepRecord& note, Dimension* dimension) {
+  const auto code = NormaliseFitCode(TextAt(note, 1));
+  const bool is_thread = code && code->front() == 'M' && code->find('/') == std::string::npos;
+  if (code && !is_thread) {
+    dimension->fit = code;
+  }
+}
+
+std::vector<EntityId> ToleranceReader::ListItems(EntityId representation) const {
   std::vector<EntityId> items;
   const StepEntity entity = text_.Find(representation);
   for (const StepRecord& record : entity) {
@@ -271,14 +281,17 @@ bool ToleranceReader::ReadSizes(EntityId representation, Dimension* dimension) {
       CollectRefs(record.values[1], &items);
     }
   }
-  for (const EntityId item : items) {
+  return items;
+}
+
+bool ToleranceReader::ReadSizes(EntityId representation, Dimension* dimension) {
+  std::optional<double> nominal;
+  std::optional<double> upper;
+  std::optional<double> lower;
+  for (const EntityId item : ListItems(representation)) {
     const StepEntity value = text_.Find(item);
     if (const StepRecord* note = FindRecord(value, "DESCRIPTIVE_REPRESENTATION_ITEM")) {
-      const auto code = NormaliseFitCode(TextAt(*note, 1));
-      const bool is_thread = code && code->front() == 'M' && code->find('/') == std::string::npos;
-      if (code && !is_thread) {  // In a note "M8" is a thread.
-        dimension->fit = code;
-      }
+      ReadFitNote(*note, dimension);
       continue;
     }
     const auto measure = ReadMeasure(text_, item, representation);
@@ -506,6 +519,39 @@ void ToleranceReader::Distribute(std::vector<Found<T>>* found, std::vector<T> Pa
   }
 }
 
+void ToleranceReader::CheckSize(const std::string& part, const std::vector<double>& sizes,
+                                Dimension* dimension) {
+  const auto explains = [&](double factor) {
+    return std::any_of(sizes.begin(), sizes.end(), [&](double size) {
+      return std::abs(factor * dimension->nominal - size) <= kSameSize * size;
+    });
+  };
+  if (sizes.empty() || explains(1)) {
+    return;
+  }
+  const std::string where = fmt::format("{} {}", part, dimension->entity);
+  const std::string problem =
+      fmt::format("the {} is {:.6g} mm but its face has {:.6g} mm", dimension->name,
+                  units::ToMm(dimension->nominal), units::ToMm(sizes.front()));
+  constexpr std::array kFactors{25.4, 1000.0, 1 / 25.4, 1e-3};
+  const auto* const factor = std::find_if(kFactors.begin(), kFactors.end(), explains);
+  if (factor == kFactors.end()) {
+    diagnostics_->Warn("dimension-differs", where, problem,
+                       "check which face the dimension belongs to in the CAD system");
+    return;
+  }
+  diagnostics_->Warn("dimension-unit", where,
+                     fmt::format("{}; the value is multiplied by {:.6g}", problem, *factor),
+                     "check the units of the dimensions in the CAD system");
+  dimension->nominal *= *factor;
+  if (dimension->upper) {
+    *dimension->upper *= *factor;
+  }
+  if (dimension->lower) {
+    *dimension->lower *= *factor;
+  }
+}
+
 /** Catches dimensions in a unit other than that which the file names. */
 void ToleranceReader::CheckSizes(Part* part) {
   for (Dimension& dimension : part->dimensions) {
@@ -521,42 +567,7 @@ void ToleranceReader::CheckSizes(Part* part) {
         sizes.push_back(times * surface.radius);
       }
     }
-    const auto explains = [&](double factor) {
-      return std::any_of(sizes.begin(), sizes.end(), [&](double size) {
-        return std::abs(factor * dimension.nominal - size) <= kSameSize * size;
-      });
-    };
-    if (sizes.empty() || explains(1)) {
-      continue;
-    }
-    const std::string where = fmt::format("{} {}", part->name, dimension.entity);
-    bool is_explained = false;
-    for (const double factor : {25.4, 1000.0, 1 / 25.4, 1e-3}) {
-      if (explains(factor)) {
-        diagnostics_->Warn(
-            "dimension-unit", where,
-            fmt::format(
-                "the {} is {:.6g} mm but its face has {:.6g} mm; the value is multiplied by {:.6g}",
-                dimension.name, units::ToMm(dimension.nominal), units::ToMm(sizes.front()), factor),
-            "check the units of the dimensions in the CAD system");
-        dimension.nominal *= factor;
-        if (dimension.upper) {
-          *dimension.upper *= factor;
-        }
-        if (dimension.lower) {
-          *dimension.lower *= factor;
-        }
-        is_explained = true;
-        break;
-      }
-    }
-    if (!is_explained) {
-      diagnostics_->Warn(
-          "dimension-differs", where,
-          fmt::format("the {} is {:.6g} mm but its face has {:.6g} mm", dimension.name,
-                      units::ToMm(dimension.nominal), units::ToMm(sizes.front())),
-          "check which face the dimension belongs to in the CAD system");
-    }
+    CheckSize(part->name, sizes, &dimension);
   }
 }
 
