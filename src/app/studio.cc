@@ -267,6 +267,84 @@ Result<std::unique_ptr<studio::StudyDesk>> OpenDesk(const StudioOptions& options
   return studio::StudyDesk::Open(std::move(*folder), workbench, std::move(desk));
 }
 
+/** Says what was kept of the work before, and how the program is ended. */
+void PrintWelcome(const studio::Server& server, const std::optional<studio::SavedWork>& work,
+                  const std::string& about_certificate) {
+  if (server.has_kept_links()) {
+    fmt::print("The links of the previous start are still valid, and open pages reconnect.\n");
+  }
+  if (work) {
+    fmt::print("The work on {} is restored; use --fresh to start over.\n", work->name);
+  }
+  fmt::print("{}Press Ctrl+C to end it.\n", about_certificate);
+  std::fflush(stdout);
+}
+
+/** Opens what the user works on: what was saved, or else the file that is named. */
+void OpenWork(const StudioOptions& options, const std::optional<studio::SavedWork>& work,
+              const std::filesystem::path& recent, studio::Workbench* workbench) {
+  if (work) {
+    workbench->opener().Resume(*work);
+  } else if (!options.load.file.empty()) {
+    workbench->opener().Open(options.load.file, options.load.file.filename().string());
+  }
+  if (!options.load.file.empty()) {
+    studio::NoteRecentFile(recent, FullPath(options.load.file));
+  }
+}
+
+/** The file that remembers which products were opened last. */
+std::filesystem::path FindRecentFile(const std::filesystem::path& scratch) {
+  const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state");
+  return (state ? *state : scratch) / "studio" / "recent.json";
+}
+
+/** Starts the server, and serves until the program is to end. */
+Result<void> Serve(const StudioOptions& options, const studio::StateFolder& folder,
+                   const std::optional<studio::SavedWork>& work,
+                   const std::filesystem::path& recent, EndWatch* end,
+                   studio::Workbench* workbench) {
+  studio::ServerOptions served;
+  served.port = options.port;
+  served.upload_folder = folder.uploads();
+  served.access_file = folder.access_file();
+  served.reachable = ListReachable();
+  std::string about_certificate;
+  if (!options.listen.empty()) {
+    auto prepared = PrepareForOthers(options, &served);
+    if (!prepared) {
+      return Unexpected(prepared.error());
+    }
+    about_certificate = std::move(*prepared);
+  }
+  const auto desk = OpenDesk(options, workbench);
+  if (!desk) {
+    return Unexpected(desk.error());
+  }
+  served.desk = desk->get();
+  studio::Server server(workbench, FindOffered(recent), served);
+  if (auto started = server.Start(); !started) {
+    return started;
+  }
+  PrintLinks(server, served);
+  if (*desk != nullptr) {
+    (*desk)->Start();
+  }
+  PrintWelcome(server, work, about_certificate);
+  OpenWork(options, work, recent, workbench);
+  if (options.opens_browser) {
+    OpenBrowser(
+        server.LinkFor(studio::Role::kOperator, served.tls ? served.names.front() : "127.0.0.1"));
+  }
+  end->Wait();
+  fmt::print("\n");
+  std::fflush(stdout);
+  workbench->live().SetForcesOff(true);  // whatever else takes its time
+  workbench->Stop();
+  server.Stop();
+  return {};
+}
+
 int RunStudio(const StudioOptions& options) {
   if (!options.load.file.empty()) {
     if (const auto input = cad::CheckInput(options.load.file); !input) {
@@ -290,72 +368,33 @@ int RunStudio(const StudioOptions& options) {
   studio::WorkbenchOptions bench = MakeWorkbench(options);
   bench.work_file = options.study.empty() ? folder->work_file() : std::filesystem::path();
   studio::Workbench workbench(bench);
-  studio::ServerOptions served;
-  served.port = options.port;
-  served.upload_folder = folder->uploads();
-  served.access_file = folder->access_file();
-  served.reachable = ListReachable();
-  std::string about_certificate;
-  if (!options.listen.empty()) {
-    auto prepared = PrepareForOthers(options, &served);
-    if (!prepared) {
-      return ReportFailure(prepared.error());
-    }
-    about_certificate = std::move(*prepared);
-  }
-  const auto desk = OpenDesk(options, &workbench);
-  if (!desk) {
-    return ReportFailure(desk.error());
-  }
-  served.desk = desk->get();
-  const auto state = FindUserFolder("XDG_STATE_HOME", ".local/state");
-  const std::filesystem::path recent =
-      (state ? *state : scratch->path()) / "studio" / "recent.json";
-  studio::Server server(&workbench, FindOffered(recent), served);
-  if (const auto started = server.Start(); !started) {
-    return ReportFailure(started.error());
-  }
-  PrintLinks(server, served);
-  if (*desk != nullptr) {
-    (*desk)->Start();
-  }
-  if (server.has_kept_links()) {
-    fmt::print("The links of the previous start are still valid, and open pages reconnect.\n");
-  }
-  if (work) {
-    fmt::print("The work on {} is restored; use --fresh to start over.\n", work->name);
-  }
-  fmt::print("{}Press Ctrl+C to end it.\n", about_certificate);
-  std::fflush(stdout);
-  if (work) {
-    workbench.opener().Resume(*work);
-  } else if (!options.load.file.empty()) {
-    workbench.opener().Open(options.load.file, options.load.file.filename().string());
-  }
-  if (!options.load.file.empty()) {
-    studio::NoteRecentFile(recent, FullPath(options.load.file));
-  }
-  if (options.opens_browser) {
-    OpenBrowser(
-        server.LinkFor(studio::Role::kOperator, served.tls ? served.names.front() : "127.0.0.1"));
-  }
-  end.Wait();
-  fmt::print("\n");
-  std::fflush(stdout);
-  workbench.live().SetForcesOff(true);  // whatever else takes its time
-  workbench.Stop();
-  server.Stop();
-  return 0;
+  const auto served =
+      Serve(options, *folder, work, FindRecentFile(scratch->path()), &end, &workbench);
+  return served ? 0 : ReportFailure(served.error());
 }
 
-}  // namespace
+constexpr const char* kStudioFooter =
+    "The printed links contain a secret. The first browser that opens the first link gets "
+    "control;\n"
+    "the second link is for viewers. The next start for the same product has the same links and\n"
+    "restores the work, however the program has ended. Without --listen, only programs on this\n"
+    "machine can reach the studio. With --listen, connections are encrypted: compare the "
+    "printed\n"
+    "fingerprint with the one that the browser shows.\n"
+    "A headset on a cable needs no --listen: run `adb reverse tcp:8080 tcp:8080`, and open the\n"
+    "link in its browser with localhost instead of 127.0.0.1.\n"
+    "Examples:\n"
+    "  hvas studio\n"
+    "  hvas studio products/gear_pump.step\n"
+    "  hvas studio products/nut_bolt.step --threads-turn\n"
+    "  hvas studio --study fit-2016 --participant P01 -o fits\n"
+    "  hvas studio pump.step --port 8080 --no-open\n"
+    "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"
+    "  hvas studio pump.step --listen 0.0.0.0 --host workshop.local\n"
+    "  hvas studio --listen 0.0.0.0 --host studio.example --certificate full.pem --key key.pem";
 
-void AddStudio(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand(
-      "studio", "Assemble a product by hand in a browser, with a mouse, headset or haptic device");
-  const auto options = std::make_shared<StudioOptions>();
-  command->add_option("file", options->load.file,
-                      "STEP, IGES or mesh file, or a folder of meshes, to open");
+/** Where the studio listens, and what it is known by there. */
+void AddAddressOptions(CLI::App* command, StudioOptions* options) {
   command->add_option("--port", options->port, "Port to listen on; default: any free port")
       ->check(CLI::Range(1, 65535));
   CLI::Option* listen = command->add_option("--listen", options->listen,
@@ -373,13 +412,9 @@ void AddStudio(CLI::App* app, int* status) {
           ->add_option("--key", options->tls.key, "Private key of the certificate, in PEM format")
           ->needs(certificate);
   certificate->needs(key);
-  command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
-  command->add_flag("--fresh", options->is_fresh,
-                    "Start with all parts on the table instead of restoring the saved work");
-  command->add_flag("--new-links", options->new_links,
-                    "Make new links, and revoke those of the previous start");
-  command->add_option("--recordings", options->recordings,
-                      "Folder for recordings; default ~/.local/share/hvas/recordings");
+}
+
+void AddStudyOptions(CLI::App* command, StudioOptions* options) {
   CLI::Option* study = command->add_option(
       "--study", options->study,
       "Run a study with a participant: a protocol file, or xia-2011 or fit-2016");
@@ -392,6 +427,25 @@ void AddStudio(CLI::App* app, int* status) {
       ->add_option("-o,--output", options->folder,
                    "Folder of the study; default: the protocol's id")
       ->needs(study);
+}
+
+}  // namespace
+
+void AddStudio(CLI::App* app, int* status) {
+  CLI::App* command = app->add_subcommand(
+      "studio", "Assemble a product by hand in a browser, with a mouse, headset or haptic device");
+  const auto options = std::make_shared<StudioOptions>();
+  command->add_option("file", options->load.file,
+                      "STEP, IGES or mesh file, or a folder of meshes, to open");
+  AddAddressOptions(command, options.get());
+  command->add_flag("!--no-open", options->opens_browser, "Do not open a browser");
+  command->add_flag("--fresh", options->is_fresh,
+                    "Start with all parts on the table instead of restoring the saved work");
+  command->add_flag("--new-links", options->new_links,
+                    "Make new links, and revoke those of the previous start");
+  command->add_option("--recordings", options->recordings,
+                      "Folder for recordings; default ~/.local/share/hvas/recordings");
+  AddStudyOptions(command, options.get());
   command->add_option("--seed", options->seed, "Seed of the parts' actual sizes and of the study")
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
@@ -403,25 +457,7 @@ void AddStudio(CLI::App* app, int* status) {
                     "screwdriver, spanner, caliper, vise, chuck, tray and V-block");
   AddAccessoryOptions(command, &options->load);
   AddLoadOptions(command, &options->load);
-  command->footer(
-      "The printed links contain a secret. The first browser that opens the first link gets "
-      "control;\n"
-      "the second link is for viewers. The next start for the same product has the same links and\n"
-      "restores the work, however the program has ended. Without --listen, only programs on this\n"
-      "machine can reach the studio. With --listen, connections are encrypted: compare the "
-      "printed\n"
-      "fingerprint with the one that the browser shows.\n"
-      "A headset on a cable needs no --listen: run `adb reverse tcp:8080 tcp:8080`, and open the\n"
-      "link in its browser with localhost instead of 127.0.0.1.\n"
-      "Examples:\n"
-      "  hvas studio\n"
-      "  hvas studio products/gear_pump.step\n"
-      "  hvas studio products/nut_bolt.step --threads-turn\n"
-      "  hvas studio --study fit-2016 --participant P01 -o fits\n"
-      "  hvas studio pump.step --port 8080 --no-open\n"
-      "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"
-      "  hvas studio pump.step --listen 0.0.0.0 --host workshop.local\n"
-      "  hvas studio --listen 0.0.0.0 --host studio.example --certificate full.pem --key key.pem");
+  command->footer(kStudioFooter);
   command->callback([options, status] { *status = RunStudio(*options); });
 }
 

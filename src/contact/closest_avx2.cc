@@ -33,6 +33,10 @@ Four Select(Four mask, Four yes, Four no) {
   return _mm256_blendv_pd(no, yes, mask);
 }
 
+Four IsFeature(Four feature, double number) {
+  return _mm256_cmp_pd(feature, _mm256_set1_pd(number), _CMP_EQ_OQ);
+}
+
 // Four triangles, coordinate by coordinate, and the dot products of their sides.
 struct FourTriangles {
   Four a[3];
@@ -59,29 +63,27 @@ void CalcSides(FourTriangles* t) {
   }
 }
 
+// The closest points, q = a + u ab + v ac, and the features that they are on.
+struct FourWeights {
+  Four u;
+  Four v;
+  Four feature;  // As in CalcClosestOnTriangle.
+};
+
 // What CalcClosestOnTriangle decides one after the other is decided here at once; what it looks at
 // first is selected last.
-[[gnu::always_inline]] inline void CalcFour(const FourTriangles& t, const Four point[3],
-                                            const FourResults& out) {
-  const Four* a = t.a;
-  const Four* b = t.b;
-  const Four* c = t.c;
-  const Four* ab = t.ab;
-  const Four* ac = t.ac;
-  const Four ab_ab = t.ab_ab;
-  const Four ab_ac = t.ab_ac;
-  const Four ac_ac = t.ac_ac;
+[[gnu::always_inline]] inline FourWeights FindWeights(const FourTriangles& t, const Four point[3]) {
   Four ap[3];
   for (int k = 0; k < 3; ++k) {
-    ap[k] = _mm256_sub_pd(point[k], a[k]);
+    ap[k] = _mm256_sub_pd(point[k], t.a[k]);
   }
   const Four zero = _mm256_setzero_pd();
-  const Four d1 = Dot(ab, ap);
-  const Four d2 = Dot(ac, ap);
-  const Four d3 = _mm256_sub_pd(d1, ab_ab);
-  const Four d4 = _mm256_sub_pd(d2, ab_ac);
-  const Four d5 = _mm256_sub_pd(d1, ab_ac);
-  const Four d6 = _mm256_sub_pd(d2, ac_ac);
+  const Four d1 = Dot(t.ab, ap);
+  const Four d2 = Dot(t.ac, ap);
+  const Four d3 = _mm256_sub_pd(d1, t.ab_ab);
+  const Four d4 = _mm256_sub_pd(d2, t.ab_ac);
+  const Four d5 = _mm256_sub_pd(d1, t.ab_ac);
+  const Four d6 = _mm256_sub_pd(d2, t.ac_ac);
   const Four d43 = _mm256_sub_pd(d4, d3);
   const Four d56 = _mm256_sub_pd(d5, d6);
   const Four vc = _mm256_sub_pd(_mm256_mul_pd(d1, d4), _mm256_mul_pd(d3, d2));
@@ -95,7 +97,7 @@ void CalcSides(FourTriangles* t) {
   const Four on_ac = all(LessOrEqual(vb, zero), LessOrEqual(zero, d2), LessOrEqual(d6, zero));
   const Four on_bc = all(LessOrEqual(va, zero), LessOrEqual(zero, d43), LessOrEqual(zero, d56));
 
-  // q = a + u ab + v ac, with u and v over one denominator.
+  // u and v are over one denominator.
   Four below = _mm256_add_pd(_mm256_add_pd(va, vb), vc);
   Four feature =
       _mm256_andnot_pd(_mm256_cmp_pd(below, zero, _CMP_GT_OQ), _mm256_set1_pd(4));  // No area.
@@ -114,18 +116,22 @@ void CalcSides(FourTriangles* t) {
   feature = Select(on_ab, _mm256_set1_pd(1), feature);
   feature = Select(at_b, _mm256_set1_pd(5), feature);
   feature = Select(at_a, _mm256_set1_pd(4), feature);
-  const auto is = [&](double number) {
-    return _mm256_cmp_pd(feature, _mm256_set1_pd(number), _CMP_EQ_OQ);
-  };
   v = _mm256_div_pd(v, below);
-  u = Select(is(2), _mm256_sub_pd(_mm256_set1_pd(1), v), _mm256_div_pd(u, below));
-  const Four is_a = is(4);
-  const Four is_b = is(5);
-  const Four is_c = is(6);
+  u = Select(IsFeature(feature, 2), _mm256_sub_pd(_mm256_set1_pd(1), v), _mm256_div_pd(u, below));
+  return {u, v, feature};
+}
+
+[[gnu::always_inline]] inline void CalcFour(const FourTriangles& t, const Four point[3],
+                                            const FourResults& out) {
+  const auto [u, v, feature] = FindWeights(t, point);
+  const Four is_a = IsFeature(feature, 4);
+  const Four is_b = IsFeature(feature, 5);
+  const Four is_c = IsFeature(feature, 6);
   Four way[3];
   for (int k = 0; k < 3; ++k) {
-    Four q = _mm256_add_pd(_mm256_add_pd(a[k], _mm256_mul_pd(u, ab[k])), _mm256_mul_pd(v, ac[k]));
-    q = Select(is_a, a[k], Select(is_b, b[k], Select(is_c, c[k], q)));
+    Four q =
+        _mm256_add_pd(_mm256_add_pd(t.a[k], _mm256_mul_pd(u, t.ab[k])), _mm256_mul_pd(v, t.ac[k]));
+    q = Select(is_a, t.a[k], Select(is_b, t.b[k], Select(is_c, t.c[k], q)));
     _mm256_storeu_pd(out.at[k], q);
     way[k] = _mm256_sub_pd(q, point[k]);
   }

@@ -123,9 +123,32 @@ class Track {
   bool is_usable_{false};
 };
 
-// Steepest descent along the track with a secant step: the slope at two points gives the bottom of
-// the parabola through them, which is exact for shapes that curve evenly. `accept` is asked about
-// each state that would be gone to; `is_barred` tells that it let none of a step's through.
+// Two states downhill of one: a probe, and the bottom of the parabola that the slopes at both give,
+// which is exact for shapes that curve evenly. Those that the track does not go to are infinitely
+// far.
+template <typename Evaluate>
+std::array<State, 2> LookDownhill(const State& from, const Vec3& direction, double slope,
+                                  double left, Track* track, Evaluate evaluate) {
+  const auto look = [&](double length, State* out) {
+    out->p = from.p + length * direction;
+    const bool is_there = track->Project(out) && evaluate(out);
+    out->distance = is_there ? out->distance : std::numeric_limits<double>::infinity();
+    return is_there;
+  };
+  std::array<State, 2> states;
+  auto& [probe, bottom] = states;
+  const double first = 0.25 * left;
+  double length = 0.1 * first;
+  if (look(first, &probe)) {
+    const double change = track->GradientAlong(probe).dot(direction) + slope;
+    length = change > 0 ? std::min(first * slope / change, left) : left;
+  }
+  look(length, &bottom);
+  return states;
+}
+
+// Steepest descent along the track with a secant step. `accept` is asked about each state that
+// would be gone to; `is_barred` tells that it let none of a step's through.
 template <typename Evaluate, typename Accept>
 State Descend(const State& start, Track* track, Evaluate evaluate, Accept accept, bool* is_barred) {
   *is_barred = false;
@@ -137,30 +160,11 @@ State Descend(const State& start, Track* track, Evaluate evaluate, Accept accept
     if (slope * left < kWorthwhile) {
       break;
     }
-    const Vec3 direction = downhill / slope;
-    const State from = best;
-    const auto look = [&](double length, State* out) {
-      out->p = from.p + length * direction;
-      return track->Project(out) && evaluate(out);
-    };
-    State probe;
-    const double first = 0.25 * left;
-    double length = first;
-    if (look(first, &probe)) {
-      const double change = track->GradientAlong(probe).dot(direction) + slope;
-      length = change > 0 ? std::min(first * slope / change, left) : left;
-    } else {
-      probe.distance = std::numeric_limits<double>::infinity();
-      length = 0.1 * first;
-    }
-    State bottom;
-    if (!look(length, &bottom)) {
-      bottom.distance = std::numeric_limits<double>::infinity();
-    }
+    const double before = best.distance;
+    const auto states = LookDownhill(best, downhill / slope, slope, left, track, evaluate);
     // The lower one where the track goes there, else the other.
-    const State* const lower = bottom.distance < probe.distance ? &bottom : &probe;
-    const State* const other = lower == &bottom ? &probe : &bottom;
-    for (const State* s : {lower, other}) {
+    const std::size_t lower = states[1].distance < states[0].distance ? 1 : 0;
+    for (const State* s : {&states[lower], &states[1 - lower]}) {
       if (!(s->distance < best.distance) || !track->Reaches(*s)) {
         continue;
       }
@@ -170,7 +174,7 @@ State Descend(const State& start, Track* track, Evaluate evaluate, Accept accept
         break;
       }
     }
-    if (best.distance > from.distance - 1e-10) {
+    if (best.distance > before - 1e-10) {
       break;
     }
   }

@@ -216,6 +216,10 @@ class Batch {
  private:
   [[nodiscard]] Counts MakeCounts() const;
   void RunBlocks(std::int64_t first, Counts* counts);
+  /** Runs all blocks, by several threads. */
+  [[nodiscard]] Counts CountAll();
+  [[nodiscard]] LandStatistics CalcLand(const Counts& all, std::size_t k) const;
+  [[nodiscard]] ForceBand CalcBand(const Counts& all, std::size_t d) const;
   void DrawClearances(std::int64_t block, std::vector<std::vector<float>>* clearances_um,
                       Counts* counts);
 
@@ -342,7 +346,7 @@ void Batch::RunBlocks(std::int64_t first, Counts* counts) {
   }
 }
 
-Population Batch::Run() {
+Counts Batch::CountAll() {
   std::vector<Counts> counts(static_cast<std::size_t>(parameters_.threads), MakeCounts());
   std::vector<std::thread> threads;
   for (int t = 1; t < parameters_.threads; ++t) {
@@ -367,7 +371,57 @@ Population Batch::Run() {
     all.any_yield += counts[t].any_yield;
     all.over_press += counts[t].over_press;
   }
+  return std::move(all);
+}
 
+LandStatistics Batch::CalcLand(const Counts& all, std::size_t k) const {
+  const auto n = static_cast<double>(parameters_.count);
+  double sum = 0;
+  double squares = 0;
+  for (const BlockSums& block : sums_) {
+    sum += block.clearance[k];
+    squares += block.clearance_squared[k];
+  }
+  LandStatistics land;
+  const Limits& range = lands_[k].clearance;
+  land.mean_clearance = CalcMiddle(range) + sum / n;
+  land.sigma_clearance = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
+  // What bounds a distribution that has no end says nothing of the batch: half a step in.
+  std::vector<double> shares(kBandShares.begin(), kBandShares.end());
+  for (int i = 0; i <= kCurveSteps; ++i) {
+    shares.push_back(std::clamp(static_cast<double>(i), 0.5, kCurveSteps - 0.5) / kCurveSteps);
+  }
+  std::vector<double> quantiles = all.clearances[k].Quantiles(shares);
+  for (double& quantile : quantiles) {
+    quantile += CalcMiddle(range);
+  }
+  std::copy_n(quantiles.begin(), kBandShares.size(), land.clearance_quantiles.begin());
+  land.clearance_curve.assign(quantiles.begin() + kBandShares.size(), quantiles.end());
+  land.interference_share = static_cast<double>(all.interference[k]) / n;
+  land.yield_share = static_cast<double>(all.yield[k]) / n;
+  return land;
+}
+
+ForceBand Batch::CalcBand(const Counts& all, std::size_t d) const {
+  double end = 0;
+  for (const PopulationLand& land : parameters_.lands) {
+    end = std::max(end, land.start + land.press.length);
+  }
+  ForceBand band;
+  band.depth = end * static_cast<double>(d) / parameters_.depths;
+  for (const BlockSums& block : sums_) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      band.mean += static_cast<double>(block.force[d * kLanes + static_cast<std::size_t>(lane)]);
+    }
+  }
+  band.mean /= static_cast<double>(parameters_.count);
+  const std::vector<double> quantiles = all.forces[d].Quantiles(kBandShares);
+  std::copy(quantiles.begin(), quantiles.end(), band.quantiles.begin());
+  return band;
+}
+
+Population Batch::Run() {
+  const Counts all = CountAll();
   const auto n = static_cast<double>(parameters_.count);
   Population result;
   result.count = parameters_.count;
@@ -375,47 +429,10 @@ Population Batch::Run() {
   result.any_yield_share = static_cast<double>(all.any_yield) / n;
   result.over_press_share = static_cast<double>(all.over_press) / n;
   for (std::size_t k = 0; k < lands_.size(); ++k) {
-    double sum = 0;
-    double squares = 0;
-    for (const BlockSums& block : sums_) {
-      sum += block.clearance[k];
-      squares += block.clearance_squared[k];
-    }
-    LandStatistics land;
-    const Limits& range = lands_[k].clearance;
-    land.mean_clearance = CalcMiddle(range) + sum / n;
-    land.sigma_clearance = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
-    // What bounds a distribution that has no end says nothing of the batch: half a step in.
-    std::vector<double> shares(kBandShares.begin(), kBandShares.end());
-    for (int i = 0; i <= kCurveSteps; ++i) {
-      shares.push_back(std::clamp(static_cast<double>(i), 0.5, kCurveSteps - 0.5) / kCurveSteps);
-    }
-    std::vector<double> quantiles = all.clearances[k].Quantiles(shares);
-    for (double& quantile : quantiles) {
-      quantile += CalcMiddle(range);
-    }
-    std::copy_n(quantiles.begin(), kBandShares.size(), land.clearance_quantiles.begin());
-    land.clearance_curve.assign(quantiles.begin() + kBandShares.size(), quantiles.end());
-    land.interference_share = static_cast<double>(all.interference[k]) / n;
-    land.yield_share = static_cast<double>(all.yield[k]) / n;
-    result.lands.push_back(land);
-  }
-  double end = 0;
-  for (const PopulationLand& land : parameters_.lands) {
-    end = std::max(end, land.start + land.press.length);
+    result.lands.push_back(CalcLand(all, k));
   }
   for (std::size_t d = 0; d < all.forces.size(); ++d) {
-    ForceBand band;
-    band.depth = end * static_cast<double>(d) / parameters_.depths;
-    for (const BlockSums& block : sums_) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        band.mean += static_cast<double>(block.force[d * kLanes + static_cast<std::size_t>(lane)]);
-      }
-    }
-    band.mean /= n;
-    const std::vector<double> quantiles = all.forces[d].Quantiles(kBandShares);
-    std::copy(quantiles.begin(), quantiles.end(), band.quantiles.begin());
-    result.bands.push_back(band);
+    result.bands.push_back(CalcBand(all, d));
   }
   return result;
 }

@@ -159,30 +159,30 @@ std::string FindMissingSize(const ElasticPart& part) {
     return {};
   }
   const bool is_ring = part.outer > part.inner && part.inner > 0;
+  const bool has_thickness = part.thickness > 0;
+  const auto missing = [](bool has_it, const char* what) { return has_it ? "" : what; };
   switch (part.kind) {
     case ElasticKind::kCoilSpring:
-      return !(part.thickness > 0) || !is_ring ? "wire or diameter is"
-             : !(part.coils > 0)               ? "number of active coils is"
-                                               : "";
+      return !has_thickness || !is_ring ? "wire or diameter is"
+                                        : missing(part.coils > 0, "number of active coils is");
     case ElasticKind::kDiscSpring:
-      return !(part.thickness > 0) || !is_ring    ? "thickness or diameter is"
-             : !(part.free_size > part.thickness) ? "free length is"
-                                                  : "";
+      return !has_thickness || !is_ring
+                 ? "thickness or diameter is"
+                 : missing(part.free_size > part.thickness, "free length is");
     case ElasticKind::kLockWasher:
     case ElasticKind::kSleeve:
-      return !(part.thickness > 0) || !is_ring ? "thickness or diameter is" : "";
+      return missing(has_thickness && is_ring, "thickness or diameter is");
     case ElasticKind::kLeafSpring:
-      return !(part.thickness > 0) || !(part.outer > 0) ? "thickness or length is" : "";
+      return missing(has_thickness && part.outer > 0, "thickness or length is");
     case ElasticKind::kGasket:
-      return !(part.area > 0) ? "area is" : "";
+      return missing(part.area > 0, "area is");
     case ElasticKind::kLipSeal:
-      return !(part.thickness > 0) || !(part.lip_length() > 0) || !(part.free_size > 0)
-                 ? "lip's length or thickness is"
-                 : "";
+      return missing(has_thickness && part.lip_length() > 0 && part.free_size > 0,
+                     "lip's length or thickness is");
     case ElasticKind::kSlitPin:
-      break;
+      return missing(has_thickness && part.free_size > 2 * part.thickness, "wall or diameter is");
   }
-  return !(part.thickness > 0) || part.free_size <= 2 * part.thickness ? "wall or diameter is" : "";
+  return {};
 }
 
 std::optional<fits::PressedPart> MakePressedPart(const ElasticPart& part) {

@@ -61,18 +61,14 @@ void Note(const Product& product, const std::map<OccurrenceId, FlexiblePart>& pa
   }
 }
 
-}  // namespace
-
-Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
-                              const std::vector<std::string>& rigid, Product* product,
-                              Diagnostics* diagnostics) {
+/** Classifies each part by its form, unless all of them are rigid. */
+std::map<OccurrenceId, FlexiblePart> RecogniseFlexible(const Product& product, bool is_all_rigid) {
   std::map<OccurrenceId, FlexiblePart> parts;
-  const bool is_all_rigid = std::find(rigid.begin(), rigid.end(), kAll) != rigid.end();
   std::map<PartId, std::optional<FlexiblePart>> recognised;
-  for (const product::Occurrence& occurrence : product->occurrences) {
+  for (const product::Occurrence& occurrence : product.occurrences) {
     auto [entry, is_new] = recognised.try_emplace(occurrence.part);
     if (is_new && !is_all_rigid) {
-      entry->second = product::ClassifyFlexible(product->parts[occurrence.part.index()]);
+      entry->second = product::ClassifyFlexible(product.parts[occurrence.part.index()]);
     }
     if (is_all_rigid) {
       parts[occurrence.id] = MakeRigid(occurrence.id);
@@ -82,6 +78,16 @@ Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
       parts[occurrence.id] = std::move(part);
     }
   }
+  return parts;
+}
+
+}  // namespace
+
+Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
+                              const std::vector<std::string>& rigid, Product* product,
+                              Diagnostics* diagnostics) {
+  const bool is_all_rigid = std::find(rigid.begin(), rigid.end(), kAll) != rigid.end();
+  std::map<OccurrenceId, FlexiblePart> parts = RecogniseFlexible(*product, is_all_rigid);
   for (const std::string& name : rigid) {
     if (name == kAll) {
       continue;

@@ -108,10 +108,10 @@ struct ProductBodies {
   std::vector<bool> is_open;  // Of problem.mates: the user's that the drawn poses do not fulfil.
 };
 
-/** @param are_contacts_kept  Whether parts that touch stay together although mates of the user move
- one of them. */
-ProductBodies MakeBodies(const Product& product, const std::set<MateId>& open,
-                         bool are_contacts_kept) {
+/** Groups the parts that move as one. @param are_contacts_kept  Whether parts that touch stay
+ together although mates of the user move one of them. */
+Groups GroupParts(const Product& product, const std::vector<DrawnJoint>& joints,
+                  const std::set<MateId>& open, bool are_contacts_kept) {
   std::set<OccurrenceId> moved;
   for (const MateId id : open) {
     moved.insert(product.mates[id.index()].a.occurrence);
@@ -126,7 +126,6 @@ ProductBodies MakeBodies(const Product& product, const std::set<MateId>& open,
       return std::minmax(a, b) == std::minmax(groups.Find(i), groups.Find(j));
     });
   };
-  const std::vector<DrawnJoint> joints = ListDrawnJoints(product, open);
   for (const DrawnJoint& joint : joints) {
     const bool is_loose = !joint.is_engaged && !are_contacts_kept &&
                           (moved.count(joint.a) > 0 || moved.count(joint.b) > 0);
@@ -134,43 +133,33 @@ ProductBodies MakeBodies(const Product& product, const std::set<MateId>& open,
       groups.Unite(joint.a.index(), joint.b.index());
     }
   }
-  ProductBodies bodies;
-  std::map<std::size_t, std::size_t> number_of;
-  for (std::size_t i = 0; i < product.occurrences.size(); ++i) {
-    bodies.body_of.push_back(number_of.try_emplace(groups.Find(i), number_of.size()).first->second);
+  return groups;
+}
+
+/** Adds a mate unless one body has both sides of it. */
+void AddBodyMate(const Product& product, const Mate& mate, bool is_open, ProductBodies* bodies) {
+  BodyMate made = MakeBodyMate(product, mate);
+  made.a = bodies->body_of[mate.a.occurrence.index()];
+  made.b = bodies->body_of[mate.b.occurrence.index()];
+  made.is_sense_open = is_open && mate.kind == MateKind::kAxisHole;
+  if (made.a != made.b) {
+    bodies->problem.mates.push_back(made);
+    bodies->ids.push_back(mate.id);
+    bodies->is_open.push_back(is_open);
   }
-  const auto add = [&](const Mate& mate, bool is_open) {
-    BodyMate made = MakeBodyMate(product, mate);
-    made.a = bodies.body_of[mate.a.occurrence.index()];
-    made.b = bodies.body_of[mate.b.occurrence.index()];
-    made.is_sense_open = is_open && mate.kind == MateKind::kAxisHole;
-    if (made.a != made.b) {
-      bodies.problem.mates.push_back(made);
-      bodies.ids.push_back(mate.id);
-      bodies.is_open.push_back(is_open);
-    }
-  };
-  for (const DrawnJoint& joint : joints) {
-    for (const MateId id : joint.mates) {
-      if (IsMeant(product.mates[id.index()])) {
-        add(product.mates[id.index()], false);
-      }
-    }
-  }
-  for (const MateId id : open) {
-    add(product.mates[id.index()], true);
-  }
-  // In each group of bodies the one with the largest part stays.
-  const std::size_t count = number_of.size();
+}
+
+/** Fixes the body with the largest part of each group of bodies that mates join. */
+void FixLargest(const Product& product, std::size_t count, ProductBodies* bodies) {
   Groups joined(count);
-  for (const BodyMate& mate : bodies.problem.mates) {
+  for (const BodyMate& mate : bodies->problem.mates) {
     joined.Unite(mate.a, mate.b);
   }
-  bodies.problem.is_fixed.assign(count, false);
+  bodies->problem.is_fixed.assign(count, false);
   std::vector<double> largest(count, -1);
   std::vector<std::size_t> base(count, 0);
   for (const Occurrence& occurrence : product.occurrences) {
-    const std::size_t body = bodies.body_of[occurrence.id.index()];
+    const std::size_t body = bodies->body_of[occurrence.id.index()];
     const std::size_t group = joined.Find(body);
     const double size = SizeOfPart(product, occurrence.id);
     if (size > largest[group]) {
@@ -179,8 +168,31 @@ ProductBodies MakeBodies(const Product& product, const std::set<MateId>& open,
     }
   }
   for (std::size_t body = 0; body < count; ++body) {
-    bodies.problem.is_fixed[base[joined.Find(body)]] = true;
+    bodies->problem.is_fixed[base[joined.Find(body)]] = true;
   }
+}
+
+/** @param are_contacts_kept  See GroupParts. */
+ProductBodies MakeBodies(const Product& product, const std::set<MateId>& open,
+                         bool are_contacts_kept) {
+  const std::vector<DrawnJoint> joints = ListDrawnJoints(product, open);
+  Groups groups = GroupParts(product, joints, open, are_contacts_kept);
+  ProductBodies bodies;
+  std::map<std::size_t, std::size_t> number_of;
+  for (std::size_t i = 0; i < product.occurrences.size(); ++i) {
+    bodies.body_of.push_back(number_of.try_emplace(groups.Find(i), number_of.size()).first->second);
+  }
+  for (const DrawnJoint& joint : joints) {
+    for (const MateId id : joint.mates) {
+      if (IsMeant(product.mates[id.index()])) {
+        AddBodyMate(product, product.mates[id.index()], false, &bodies);
+      }
+    }
+  }
+  for (const MateId id : open) {
+    AddBodyMate(product, product.mates[id.index()], true, &bodies);
+  }
+  FixLargest(product, number_of.size(), &bodies);
   return bodies;
 }
 

@@ -108,6 +108,56 @@ void DescribeFailure(SearchState* state, WaySearch* search) {
   search->stops = ListStops(probe.contacts(), std::numeric_limits<double>::infinity());
 }
 
+struct FoundPath {
+  sweep::Path path;
+  WayMethod method;
+  FreeScrew screw{};  // Of a free motion along one.
+};
+
+/** Searches by one method after the other, the quick ones first. */
+std::optional<FoundPath> FindPath(const WayProblem& problem, const WayOptions& options, double step,
+                                  SearchState* state) {
+  Probe* const probe = state->probe;
+  const std::vector<Vec3> directions = ListDirections(probe);
+  if (auto path = SearchStraight(probe, directions, step)) {
+    return FoundPath{*std::move(path), WayMethod::kStraight};
+  }
+  const std::uint64_t of_free_motion = std::min(kQueriesOfFreeMotion, options.budget);
+  if (auto found = FindFreeMotion(probe, options, of_free_motion, step)) {
+    return FoundPath{std::move(found->path), WayMethod::kFreeMotion, std::move(found->screw)};
+  }
+  const std::vector<ScrewAxis> axes = ListAxes(probe);
+  const std::uint64_t of_pushes =
+      std::min(problem.X_WB_goal ? kQueriesOfPushesToGoal : kQueriesOfPushes,
+               options.budget / kShareOfPushes);
+  if (const auto pushed = SearchByPushes(state, directions, axes, of_pushes)) {
+    std::size_t edge = 0;
+    if (auto path = RepairWay(probe, *pushed, step, &edge)) {
+      return FoundPath{*std::move(path), WayMethod::kPushes};
+    }
+  }
+  if (auto path = SearchByTree(state, directions, axes, options)) {
+    return FoundPath{*std::move(path), WayMethod::kTree};
+  }
+  return std::nullopt;
+}
+
+/** Makes a path shorter, wider and straight. The middle of a thread's play is clear, and it has no
+ shorter way. */
+void Improve(const WayOptions& options, double step, Probe* probe, FoundPath* found) {
+  if (found->screw.turn > 0 && IsThread(*probe, found->path, found->screw)) {
+    return;
+  }
+  const auto share_of = [&options](double share) {
+    return kLeastOfImproving +
+           static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
+  };
+  found->screw = FreeScrew();
+  found->path = ShortenWay(probe, found->path, step, options.seed, share_of(kShareOfShortening));
+  found->path = WidenWay(probe, found->path, step, share_of(kShareOfWidening));
+  found->path = AlignWay(probe, found->path, step);
+}
+
 }  // namespace
 
 const char* NameOf(WayMethod method) {
@@ -133,66 +183,26 @@ Result<WaySearch> FindWay(const WayProblem& problem, const WayOptions& options) 
     return Unexpected(valid.error());
   }
   const double step = CheckStepOf(problem.tolerance);
-  const std::vector<Vec3> directions = ListDirections(&probe);
   SearchState state(&probe);
   WaySearch search;
-  WayMethod method = WayMethod::kStraight;
-  std::optional<sweep::Path> path = SearchStraight(&probe, directions, step);
-  FreeScrew screw;
-  if (!path) {
-    method = WayMethod::kFreeMotion;
-    const std::uint64_t budget = std::min(kQueriesOfFreeMotion, options.budget);
-    if (auto found = FindFreeMotion(&probe, options, budget, step)) {
-      path = std::move(found->path);
-      screw = std::move(found->screw);
-    }
-  }
-  std::vector<ScrewAxis> axes;
-  if (!path) {
-    method = WayMethod::kPushes;
-    axes = ListAxes(&probe);
-    const std::uint64_t budget =
-        std::min(problem.X_WB_goal ? kQueriesOfPushesToGoal : kQueriesOfPushes,
-                 options.budget / kShareOfPushes);
-    path = SearchByPushes(&state, directions, axes, budget);
-    std::size_t edge = 0;
-    if (path) {
-      path = RepairWay(&probe, *path, step, &edge);
-    }
-  }
-  if (!path) {
-    method = WayMethod::kTree;
-    path = SearchByTree(&state, directions, axes, options);
-  }
+  std::optional<FoundPath> found = FindPath(problem, options, step, &state);
   search.is_stopped = options.stop.stop_requested();
   search.is_budget_over = probe.is_over() && !search.is_stopped;
-  if (!path) {
+  if (!found) {
     DescribeFailure(&state, &search);
-    search.queries = probe.queries();
-    search.points = probe.points();
-    return search;
-  }
-  probe.Extend(options.budget + 2 * kLeastOfImproving);
-  if (options.has_to_improve && method != WayMethod::kStraight) {
-    const auto share_of = [&options](double share) {
-      return kLeastOfImproving +
-             static_cast<std::uint64_t>(share * static_cast<double>(options.budget));
-    };
-    // The middle of a thread's play is clear, and it has no shorter way.
-    if (!(screw.turn > 0) || !IsThread(probe, *path, screw)) {
-      screw = FreeScrew();
-      path = ShortenWay(&probe, *path, step, options.seed, share_of(kShareOfShortening));
-      path = WidenWay(&probe, *path, step, share_of(kShareOfWidening));
-      path = AlignWay(&probe, *path, step);
+  } else {
+    probe.Extend(options.budget + 2 * kLeastOfImproving);
+    if (options.has_to_improve && found->method != WayMethod::kStraight) {
+      Improve(options, step, &probe, &*found);
     }
-  }
-  double deepest = std::numeric_limits<double>::infinity();
-  for (const Pose& X_WB : *path) {
-    deepest = std::min(deepest, probe.Query(X_WB, std::abs(problem.tolerance)));
+    double deepest = std::numeric_limits<double>::infinity();
+    for (const Pose& X_WB : found->path) {
+      deepest = std::min(deepest, probe.Query(X_WB, std::abs(problem.tolerance)));
+    }
+    search.way = Way{std::move(found->path), deepest, found->method, std::move(found->screw)};
   }
   search.queries = probe.queries();
   search.points = probe.points();
-  search.way = Way{std::move(*path), deepest, method, std::move(screw)};
   return search;
 }
 

@@ -178,6 +178,30 @@ HalfEdge* FindTwin(std::span<HalfEdge> bundle, const HalfEdge& edge, bool in_fac
   return nullptr;
 }
 
+using EdgeOfFace = std::pair<std::uint32_t, FaceEdge>;
+
+/** Joins the half edges at a vertex to edges: first those within a face, which are none. */
+void AddEdges(const Part& part, std::span<HalfEdge> bundle, std::vector<EdgeOfFace>* found) {
+  for (const bool in_face : {true, false}) {
+    for (HalfEdge& edge : bundle) {
+      HalfEdge* twin = edge.is_used ? nullptr : FindTwin(bundle, edge, in_face);
+      if (twin == nullptr) {
+        continue;
+      }
+      edge.is_used = twin->is_used = true;
+      if (!in_face) {
+        found->emplace_back(edge.face, MakeEdge(part, edge, twin));
+        found->emplace_back(twin->face, MakeEdge(part, *twin, &edge));
+      }
+    }
+  }
+  for (const HalfEdge& edge : bundle) {
+    if (!edge.is_used) {
+      found->emplace_back(edge.face, MakeEdge(part, edge, nullptr));
+    }
+  }
+}
+
 }  // namespace
 
 Vec3 CalcNormal(const Face& face, const Vec3& p, const Vec3& flat) {
@@ -195,29 +219,12 @@ bool FaceNeighbour::Is(EdgeSense sense) const {
 
 FaceAdjacency::FaceAdjacency(const Part& part, double tolerance) {
   HalfEdges half_edges = CollectHalfEdges(part, tolerance);
-  std::vector<std::pair<std::uint32_t, FaceEdge>> found;
+  std::vector<EdgeOfFace> found;
   for (std::size_t v = 0; v + 1 < half_edges.first.size(); ++v) {
-    const std::span<HalfEdge> bundle =
-        std::span(half_edges.items)
-            .subspan(half_edges.first[v], half_edges.first[v + 1] - half_edges.first[v]);
-    for (const bool in_face : {true, false}) {
-      for (HalfEdge& edge : bundle) {
-        HalfEdge* twin = edge.is_used ? nullptr : FindTwin(bundle, edge, in_face);
-        if (twin == nullptr) {
-          continue;
-        }
-        edge.is_used = twin->is_used = true;
-        if (!in_face) {
-          found.emplace_back(edge.face, MakeEdge(part, edge, twin));
-          found.emplace_back(twin->face, MakeEdge(part, *twin, &edge));
-        }
-      }
-    }
-    for (const HalfEdge& edge : bundle) {
-      if (!edge.is_used) {
-        found.emplace_back(edge.face, MakeEdge(part, edge, nullptr));
-      }
-    }
+    AddEdges(part,
+             std::span(half_edges.items)
+                 .subspan(half_edges.first[v], half_edges.first[v + 1] - half_edges.first[v]),
+             &found);
   }
   first_edge_.assign(part.faces.size() + 1, 0);
   for (const auto& entry : found) {

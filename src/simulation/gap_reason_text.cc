@@ -87,6 +87,20 @@ std::string DescribeProof(const Model& model, const GapReason& reason) {
   return {};
 }
 
+std::string DescribeOrderChange(const GapChange& change, const std::string& parts,
+                                const std::string& along) {
+  const bool is_one = change.parts.size() == 1;
+  if (change.has_worked) {
+    return fmt::format("order: it goes in before {}, which go{} in after it{}{}{}", parts,
+                       is_one ? "es" : "", change.do_others_turn ? " by a way that turns" : "",
+                       change.do_others_give ? " where parts give" : "", along);
+  }
+  return change.does_go_without
+             ? fmt::format("order: it goes in before {}, which then {} not go in any more", parts,
+                           is_one ? "does" : "do")
+             : fmt::format("order: it does not go in before {} either", parts);
+}
+
 }  // namespace
 
 std::string DescribeFace(const product::Product& product, OccurrenceId id, std::uint32_t face) {
@@ -135,18 +149,10 @@ std::string DescribeGapChange(const Model& model, const GapReason& reason,
                         DescribeDirection(change.direction_W))
           : std::string();
   const bool is_own = !change.parts.empty() && change.parts.front() == reason.occurrence;
+  const std::string who = is_own ? std::string("the part itself") : parts;
   switch (change.kind) {
     case GapChangeKind::kOrder:
-      if (change.has_worked) {
-        return fmt::format("order: it goes in before {}, which go{} in after it{}{}{}", parts,
-                           change.parts.size() == 1 ? "es" : "",
-                           change.do_others_turn ? " by a way that turns" : "",
-                           change.do_others_give ? " where parts give" : "", along);
-      }
-      return change.does_go_without
-                 ? fmt::format("order: it goes in before {}, which then {} not go in any more",
-                               parts, change.parts.size() == 1 ? "does" : "do")
-                 : fmt::format("order: it does not go in before {} either", parts);
+      return DescribeOrderChange(change, parts, along);
     case GapChangeKind::kClearance:
       return change.has_worked
                  ? fmt::format(
@@ -157,14 +163,12 @@ std::string DescribeGapChange(const Model& model, const GapReason& reason,
                        "clearance: {:.2f} mm on each side of it against {} does not let "
                        "it in",
                        amount_mm, parts);
-    case GapChangeKind::kFlexible: {
-      const std::string who = is_own ? std::string("the part itself") : parts;
+    case GapChangeKind::kFlexible:
       return change.has_worked
                  ? fmt::format("flexible: it goes in where {} may give by {:.2f} mm{}", who,
                                amount_mm, along)
                  : fmt::format("flexible: {:.2f} mm by which {} may give do not let it in",
                                amount_mm, who);
-    }
     case GapChangeKind::kLeaveOut:
       return change.has_worked
                  ? fmt::format("left out: it goes in without {}{}", parts, along)

@@ -161,18 +161,24 @@ bool AddScrewMate(const ScrewPair& pair, product::Product* product) {
   return true;
 }
 
-}  // namespace
+/** What the flanks say of one of the two parts of a screw. */
+struct FlanksOf {
+  double least{std::numeric_limits<double>::infinity()};  ///< Radius of its points [m].
+  double most{0};
+  std::set<std::uint32_t> met;  ///< Faces of the other part that its points meet.
+};
 
-std::optional<ScrewPair> FindScrewPair(OccurrenceId part, const planning::FreeScrew& screw) {
-  const contact::BodyId other = FindOther(screw.flanks);
-  if (!other.is_valid() || !(screw.turn > 0)) {
-    return std::nullopt;
-  }
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  double outward = 0;
-  double least_of_part = low, most_of_part = 0, least_of_other = low, most_of_other = 0;
-  std::set<std::uint32_t> part_faces, other_faces;
+/** Flanks between a part and another one, about the axis of a screw. */
+struct Flanks {
+  double low{std::numeric_limits<double>::infinity()};  ///< Along the axis [m].
+  double high{-std::numeric_limits<double>::infinity()};
+  double outward{0};  ///< Sum of the cosines of the part's pushes to outward.
+  FlanksOf part;
+  FlanksOf other;
+};
+
+Flanks CollectFlanks(const planning::FreeScrew& screw, contact::BodyId other) {
+  Flanks flanks;
   for (const planning::NearPoint& flank : screw.flanks) {
     if (flank.body != other) {
       continue;
@@ -181,37 +187,50 @@ std::optional<ScrewPair> FindScrewPair(OccurrenceId part, const planning::FreeSc
     const double along = from.dot(screw.axis.axis_W);
     const Vec3 aside = from - along * screw.axis.axis_W;
     const double radius = aside.norm();
-    low = std::min(low, along);
-    high = std::max(high, along);
-    outward += radius > 0 ? flank.nhat_W.dot(aside) / radius : 0;
-    double& least = flank.is_of_part ? least_of_part : least_of_other;
-    double& most = flank.is_of_part ? most_of_part : most_of_other;
-    least = std::min(least, radius);
-    most = std::max(most, radius);
-    (flank.is_of_part ? other_faces : part_faces).insert(flank.face);
+    flanks.low = std::min(flanks.low, along);
+    flanks.high = std::max(flanks.high, along);
+    flanks.outward += radius > 0 ? flank.nhat_W.dot(aside) / radius : 0;
+    FlanksOf& of = flank.is_of_part ? flanks.part : flanks.other;
+    of.least = std::min(of.least, radius);
+    of.most = std::max(of.most, radius);
+    of.met.insert(flank.face);
   }
   for (const planning::NearPoint& point : screw.passed) {
     if (point.body == other) {
-      (point.is_of_part ? other_faces : part_faces).insert(point.face);
+      (point.is_of_part ? flanks.part : flanks.other).met.insert(point.face);
     }
   }
-  part_faces.erase(contact::kNoFace);
-  other_faces.erase(contact::kNoFace);
+  flanks.part.met.erase(contact::kNoFace);
+  flanks.other.met.erase(contact::kNoFace);
+  return flanks;
+}
+
+}  // namespace
+
+std::optional<ScrewPair> FindScrewPair(OccurrenceId part, const planning::FreeScrew& screw) {
+  const contact::BodyId other = FindOther(screw.flanks);
+  if (!other.is_valid() || !(screw.turn > 0)) {
+    return std::nullopt;
+  }
+  const Flanks flanks = CollectFlanks(screw, other);
   const double gone = screw.turn * std::abs(screw.axis.pitch) / (2 * std::numbers::pi);
-  if (part_faces.empty() || other_faces.empty() || gone < kShareOfLength * (high - low)) {
+  if (flanks.part.met.empty() || flanks.other.met.empty() ||
+      gone < kShareOfLength * (flanks.high - flanks.low)) {
     return std::nullopt;
   }
   // What pushes the part outwards from the axis is a shaft in it.
-  const bool is_part_hole = outward > 0;
+  const bool is_part_hole = flanks.outward > 0;
+  const FlanksOf& hole = is_part_hole ? flanks.part : flanks.other;
+  const FlanksOf& shaft = is_part_hole ? flanks.other : flanks.part;
   ScrewPair pair;
   pair.hole = is_part_hole ? part : OccurrenceId(other.index());
   pair.shaft = is_part_hole ? OccurrenceId(other.index()) : part;
   pair.axis = screw.axis;
   pair.turn = screw.turn;
-  pair.core_radius = is_part_hole ? least_of_part : least_of_other;
-  pair.outer_radius = is_part_hole ? most_of_other : most_of_part;
-  pair.hole_faces = ToFaces(is_part_hole ? part_faces : other_faces);
-  pair.shaft_faces = ToFaces(is_part_hole ? other_faces : part_faces);
+  pair.core_radius = hole.least;
+  pair.outer_radius = shaft.most;
+  pair.hole_faces = ToFaces(shaft.met);
+  pair.shaft_faces = ToFaces(hole.met);
   const bool is_deep = pair.outer_radius > pair.core_radius + kLeastThreadDepth;
   return is_deep ? std::optional(pair) : std::nullopt;
 }

@@ -121,51 +121,44 @@ std::vector<std::size_t> ListAsTheyLie(const Model& model, std::vector<std::size
   return bodies;
 }
 
-}  // namespace
-
-dynamics::WorldOptions TableOptions(const Model& model) {
-  dynamics::WorldOptions options;
-  options.table_z = model.table_z;
-  return options;
+/** Side of the square of the table that a part gets [m]. */
+double CalcCell(const Body& body) {
+  return body.shape->box_B().size().norm() + kTableGap;
 }
 
-Result<void> LayOutParts(Model* model) {
-  const Product& product = *model->product;
-  const double reach = PlaceOnShelf(model);
-  model->centre_W = product.box_W.centre();
-  const double radius = 0.5 * product.box_W.size().norm();
-  model->transfer_radius = radius + reach + kTransferGap;
-  model->table_z = CalcTableHeight(*model);
+/** The parts that lie on the table: all but the fixtures that stand under the product. */
+std::vector<std::size_t> ListOnTable(const Model& model, std::size_t standing) {
+  const auto& fixtures = model.accessories.fixtures;
+  const auto end = fixtures.begin() + static_cast<std::ptrdiff_t>(standing);
   std::vector<std::size_t> order;
-  double area = 0;
-  const auto cell = [&](std::size_t i) {
-    return model->bodies[i].shape->box_B().size().norm() + kTableGap;
-  };
-  const auto& fixtures = model->accessories.fixtures;
-  const std::size_t standing = fixtures.size() - model->accessories.bench_count;
-  for (std::size_t i = 0; i < model->bodies.size(); ++i) {
-    const auto end = fixtures.begin() + static_cast<std::ptrdiff_t>(standing);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (std::find(fixtures.begin(), end, OccurrenceId(i)) == end) {
       order.push_back(i);
-      area += cell(i) * cell(i);
     }
   }
+  return order;
+}
+
+double CalcRowWidth(const Model& model, const std::vector<std::size_t>& parts) {
+  double area = 0;
   double widest = 0;
-  for (const std::size_t i : order) {
-    widest = std::max(widest, cell(i));
+  for (const std::size_t i : parts) {
+    const double cell = CalcCell(model.bodies[i]);
+    area += cell * cell;
+    widest = std::max(widest, cell);
   }
-  order = ListAsTheyLie(*model, std::move(order));
-  const double width = std::max(kRowShare * std::sqrt(area), widest);
+  return std::max(kRowShare * std::sqrt(area), widest);
+}
+
+/** Places parts in rows on the table, each a little above it. */
+void PlaceInRows(const std::vector<std::size_t>& order, double width, Model* model) {
   const double left = model->centre_W.x() - 0.5 * width;
   double x = left;
   double y = model->centre_W.y() + model->transfer_radius;
   double row_depth = 0;
-  dynamics::World world(TableOptions(*model));
-  std::vector<dynamics::BodyId> ids;
-  std::vector<std::size_t> members;
   for (const std::size_t i : order) {
     Body& body = model->bodies[i];
-    const double size = cell(i);
+    const double size = CalcCell(body);
     if (x + size > left + width) {
       x = left;
       y += row_depth;
@@ -178,17 +171,51 @@ Result<void> LayOutParts(Model* model) {
     const Vec3 bottom(box.centre().x(), box.centre().y(), box.low.z());
     body.X_WB_start = spatial::Pose(body.X_WB_goal.q(), place - bottom);
     x += size;
-    const auto id =
-        world.AddBody(product.part_of(body.occurrence).mesh.vertices, body.mass, body.X_WB_start);
+  }
+}
+
+/** Lets parts fall onto the table until they lie still. */
+Result<void> SettleOnTable(const std::vector<std::size_t>& order, Model* model) {
+  dynamics::World world(TableOptions(*model));
+  std::vector<dynamics::BodyId> ids;
+  for (const std::size_t i : order) {
+    const Body& body = model->bodies[i];
+    const auto id = world.AddBody(model->product->part_of(body.occurrence).mesh.vertices, body.mass,
+                                  body.X_WB_start);
     if (!id) {
       return Unexpected(id.error());
     }
     ids.push_back(*id);
-    members.push_back(i);
   }
   (void)world.Settle(kSettleTime);
   for (std::size_t k = 0; k < ids.size(); ++k) {
-    model->bodies[members[k]].X_WB_start = world.pose(ids[k]);
+    model->bodies[order[k]].X_WB_start = world.pose(ids[k]);
+  }
+  return {};
+}
+
+}  // namespace
+
+dynamics::WorldOptions TableOptions(const Model& model) {
+  dynamics::WorldOptions options;
+  options.table_z = model.table_z;
+  return options;
+}
+
+Result<void> LayOutParts(Model* model) {
+  const Product& product = *model->product;
+  const double reach = PlaceOnShelf(model);
+  model->centre_W = product.box_W.centre();
+  model->transfer_radius = 0.5 * product.box_W.size().norm() + reach + kTransferGap;
+  model->table_z = CalcTableHeight(*model);
+  const auto& fixtures = model->accessories.fixtures;
+  const std::size_t standing = fixtures.size() - model->accessories.bench_count;
+  std::vector<std::size_t> parts = ListOnTable(*model, standing);
+  const double width = CalcRowWidth(*model, parts);
+  const std::vector<std::size_t> order = ListAsTheyLie(*model, std::move(parts));
+  PlaceInRows(order, width, model);
+  if (auto settled = SettleOnTable(order, model); !settled) {
+    return settled;
   }
   for (std::size_t k = standing; k < fixtures.size(); ++k) {
     Body& body = model->bodies[fixtures[k].index()];

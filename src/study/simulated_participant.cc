@@ -27,6 +27,49 @@ double Vary(double median, double sigma, Random* random) {
   return median * std::exp(sigma * random->Normal());
 }
 
+Result<std::unique_ptr<record::Recorder>> MakeTrialRecorder(const simulation::Model& model,
+                                                            const Condition& condition,
+                                                            const std::filesystem::path& record) {
+  record::RecorderOptions options;
+  options.path = record;
+  options.replaces = true;  // replaces the record of an aborted trial
+  return assembly::MakeRecorder(
+      model, options,
+      {{"condition", condition.id}, {"simulated", "a simulated participant of a study"}});
+}
+
+/** Has a simulated person put the part in, in virtual time. @param sink  Null: nothing is recorded.
+ */
+TrialResult AssembleInTrial(const TrialSetup& setup, assembly::Hand hand, double limit_s,
+                            double reaction_s, session::SessionRecorder* sink) {
+  const simulation::SequenceStep& step = setup.model->sequence.steps[setup.step];
+  TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, hand.tick.dt, sink);
+  assembly::AssemblySetup trial(setup.model, std::move(hand), &watch);
+  if (sink != nullptr) {
+    sink->Begin(&trial.simulation());
+  }
+  trial.run().Only(setup.step, 1);
+  simulation::Execution execution = trial.MakeExecution(std::max(0.0, limit_s));
+  const auto begin_ns = std::llround(1e9 * reaction_s);
+  std::int64_t now_ns = 0;
+  execution.advance = [&] {
+    now_ns += simulation::Simulation::kPhysicsStepNs;
+    if (now_ns >= begin_ns) {
+      trial.run().Advance();
+    }
+  };
+  // The trial ends with seating; motion of the hand after it does not count.
+  execution.is_done = [&] { return trial.run().is_done() || watch.is_seated(); };
+  const simulation::ExecutionReport report = simulation::RunLockstep(execution);
+  TrialResult result = watch.MakeResult();
+  result.pair = DescribePair(*setup.model, setup.step);
+  if (!watch.is_seated() && !trial.run().is_done()) {
+    result.outcome = Outcome::kTimedOut;
+    result.time = 1e-9 * static_cast<double>(report.session_ns);
+  }
+  return result;
+}
+
 }  // namespace
 
 Skill DrawSkill(int participant, std::uint64_t seed) {
@@ -149,7 +192,6 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
                                       const Skill& skill, std::uint64_t seed,
                                       const std::filesystem::path& record) {
   const simulation::Model& model = *setup.model;
-  const simulation::SequenceStep& step = model.sequence.steps[setup.step];
   Random random(seed);
   const auto picked = static_cast<int>(ListPickedConstraints(condition, model, setup.step).size());
   if (condition.method == Method::kPicking) {
@@ -168,48 +210,19 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
   std::unique_ptr<record::Recorder> recorder;
   std::optional<session::SessionRecorder> sink;
   if (!record.empty()) {
-    record::RecorderOptions options;
-    options.path = record;
-    options.replaces = true;  // replaces the record of an aborted trial
-    auto created = assembly::MakeRecorder(
-        model, options,
-        {{"condition", condition.id}, {"simulated", "a simulated participant of a study"}});
+    auto created = MakeTrialRecorder(model, condition, record);
     if (!created) {
       return Unexpected(created.error());
     }
     recorder = std::move(*created);
     sink.emplace(recorder.get(), model);
   }
-  TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, hand.tick.dt,
-                   sink ? &*sink : nullptr);
-  assembly::AssemblySetup trial(setup.model, std::move(hand), &watch);
-  if (sink) {
-    sink->Begin(&trial.simulation());
-  }
-  trial.run().Only(setup.step, 1);
-  simulation::Execution execution =
-      trial.MakeExecution(std::max(0.0, condition.time_limit - picking_time));
-  const auto begin_ns = std::llround(1e9 * skill.reaction_s);
-  std::int64_t now_ns = 0;
-  execution.advance = [&] {
-    now_ns += simulation::Simulation::kPhysicsStepNs;
-    if (now_ns >= begin_ns) {
-      trial.run().Advance();
-    }
-  };
-  // The trial ends with seating; motion of the hand after it does not count.
-  execution.is_done = [&] { return trial.run().is_done() || watch.is_seated(); };
-  const simulation::ExecutionReport report = simulation::RunLockstep(execution);
+  auto result = AssembleInTrial(setup, std::move(hand), condition.time_limit - picking_time,
+                                skill.reaction_s, sink ? &*sink : nullptr);
   if (recorder != nullptr) {
     if (const auto finished = recorder->Finish(); !finished) {
       return Unexpected(finished.error());
     }
-  }
-  TrialResult result = watch.MakeResult();
-  result.pair = DescribePair(model, setup.step);
-  if (!watch.is_seated() && !trial.run().is_done()) {
-    result.outcome = Outcome::kTimedOut;
-    result.time = 1e-9 * static_cast<double>(report.session_ns);
   }
   if (result.time) {
     *result.time += picking_time;

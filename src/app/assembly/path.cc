@@ -222,6 +222,32 @@ void Print(const Json& summary) {
   }
 }
 
+/** Writes the path, or the swept volume, where a file is named. */
+Result<void> WriteOutput(const PathOptions& options, const Product& product,
+                         const Occurrence& occurrence, const TimedPath& path, Json* summary) {
+  const product::Part& part = product.part_of(occurrence.id);
+  if (options.output.empty()) {
+    summary->erase("output");
+    return {};
+  }
+  if (!options.is_swept) {
+    return WriteAtomically(options.output,
+                           options.output.extension() == ".csv"
+                               ? MakeCsv(path, part.mass.p_BoBcm_B)
+                               : MakeJson(path, occurrence, part.mass.p_BoBcm_B).dump() + "\n");
+  }
+  const std::optional<double> thinnest_wall = product::CalcThinnestWall(part);
+  const auto swept = SweepPart(options, product, occurrence, path.X_WB, thinnest_wall);
+  if (!swept) {
+    return Unexpected(swept.error());
+  }
+  summary->update(DescribeSwept(*swept));
+  if (thinnest_wall) {
+    (*summary)["thinnest_wall_mm"] = units::ToMm(*thinnest_wall);
+  }
+  return WriteSwept(options, occurrence, *swept);
+}
+
 Result<void> WritePath(const PathOptions& options) {
   if (const auto checked = Check(options); !checked) {
     return checked;
@@ -257,26 +283,7 @@ Result<void> WritePath(const PathOptions& options) {
     }
     summary.update(*clearances);
   }
-  Result<void> written;
-  if (options.output.empty()) {
-    summary.erase("output");
-  } else if (options.is_swept) {
-    const std::optional<double> thinnest_wall = product::CalcThinnestWall(part);
-    const auto swept = SweepPart(options, *product, occurrence, path->X_WB, thinnest_wall);
-    if (!swept) {
-      return Unexpected(swept.error());
-    }
-    summary.update(DescribeSwept(*swept));
-    if (thinnest_wall) {
-      summary["thinnest_wall_mm"] = units::ToMm(*thinnest_wall);
-    }
-    written = WriteSwept(options, occurrence, *swept);
-  } else {
-    written = WriteAtomically(options.output,
-                              options.output.extension() == ".csv"
-                                  ? MakeCsv(*path, part.mass.p_BoBcm_B)
-                                  : MakeJson(*path, occurrence, part.mass.p_BoBcm_B).dump() + "\n");
-  }
+  const Result<void> written = WriteOutput(options, *product, occurrence, *path, &summary);
   if (written && options.is_json) {
     fmt::print("{}\n", summary.dump(2));
   } else if (written) {
@@ -285,15 +292,22 @@ Result<void> WritePath(const PathOptions& options) {
   return written;
 }
 
-}  // namespace
+constexpr const char* kPathFooter =
+    "  .csv   one pose per line: time, centre of mass, origin, rotation [s, m]\n"
+    "  .json  the same: times_s, points_m, poses\n"
+    "  .stl   with --swept: millimetres    .glb   with --swept: metres, Y up\n"
+    "Poses are those of the part in the product's frame. No point of the mesh is further from\n"
+    "the surface than is printed; docs/algorithms/sweep.md says how.\n"
+    "Examples:\n"
+    "  hvas assemble pump.step --record run.hvasrec\n"
+    "  hvas path pump.step --part 'bushing 1' --record run.hvasrec -o way.csv\n"
+    "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --swept -o way.stl\n"
+    "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --clearance\n"
+    "  hvas path pump.step --part cover --translate 0,0,80 --swept --resolution-mm 0.5 -o "
+    "up.glb\n"
+    "  hvas path pump.step --part lever --rotate 0,0,1,90 --about 10,0,0 --swept -o turn.stl";
 
-void AddPath(CLI::App* app, int* status) {
-  CLI::App* command =
-      app->add_subcommand("path", "Write a part's path or swept volume; find clearances");
-  const auto options = std::make_shared<PathOptions>();
-  command->add_option("file", options->load.file, "CAD file")->required();
-  command->add_option("--part", options->part, "Name, path or end of the path of an occurrence")
-      ->required();
+void AddWays(CLI::App* command, PathOptions* options) {
   auto* way = command->add_option_group("way", "Source of the path");
   CLI::Option* record =
       way->add_option("--record", options->record,
@@ -319,6 +333,9 @@ void AddPath(CLI::App* app, int* status) {
       ->delimiter(',')
       ->expected(kVector)
       ->needs(rotate);
+}
+
+void AddSwept(CLI::App* command, PathOptions* options) {
   CLI::Option* swept =
       command->add_flag("--swept", options->is_swept, "Write the swept volume as a closed mesh");
   command
@@ -328,26 +345,26 @@ void AddPath(CLI::App* app, int* status) {
           "the part has thin walls")
       ->check(CLI::PositiveNumber)
       ->needs(swept);
+}
+
+}  // namespace
+
+void AddPath(CLI::App* app, int* status) {
+  CLI::App* command =
+      app->add_subcommand("path", "Write a part's path or swept volume; find clearances");
+  const auto options = std::make_shared<PathOptions>();
+  command->add_option("file", options->load.file, "CAD file")->required();
+  command->add_option("--part", options->part, "Name, path or end of the path of an occurrence")
+      ->required();
+  AddWays(command, options.get());
+  AddSwept(command, options.get());
   command->add_flag("--clearance", options->has_clearances,
                     "Find the parts that it comes nearest to on the path, how near and where");
   command->add_option("-o,--output", options->output, "File to write");
   command->add_flag("--force", options->is_forced, "Replace an existing file");
   AddJsonFlag(command, &options->is_json, "path");
   AddLoadOptions(command, &options->load);
-  command->footer(
-      "  .csv   one pose per line: time, centre of mass, origin, rotation [s, m]\n"
-      "  .json  the same: times_s, points_m, poses\n"
-      "  .stl   with --swept: millimetres    .glb   with --swept: metres, Y up\n"
-      "Poses are those of the part in the product's frame. No point of the mesh is further from\n"
-      "the surface than is printed; docs/algorithms/sweep.md says how.\n"
-      "Examples:\n"
-      "  hvas assemble pump.step --record run.hvasrec\n"
-      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec -o way.csv\n"
-      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --swept -o way.stl\n"
-      "  hvas path pump.step --part 'bushing 1' --record run.hvasrec --clearance\n"
-      "  hvas path pump.step --part cover --translate 0,0,80 --swept --resolution-mm 0.5 -o "
-      "up.glb\n"
-      "  hvas path pump.step --part lever --rotate 0,0,1,90 --about 10,0,0 --swept -o turn.stl");
+  command->footer(kPathFooter);
   command->callback([options, status] {
     const Result<void> done = WritePath(*options);
     *status = done ? 0 : ReportFailure(done.error());

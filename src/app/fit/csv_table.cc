@@ -85,6 +85,44 @@ bool NeedsQuotes(const std::string& cell, char delimiter) {
          (!cell.empty() && (cell.front() == ' ' || cell.back() == ' '));
 }
 
+/** Guesses the delimiter from the first line. */
+char GuessDelimiter(std::string_view text) {
+  const std::string_view first = text.substr(0, text.find('\n'));
+  const bool has_semicolon = first.find(';') != std::string_view::npos;
+  return has_semicolon && first.find(',') == std::string_view::npos ? ';' : ',';
+}
+
+/** Parses a file whose delimiter is guessed where it is kAnyDelimiter. */
+Result<Parsed> ParseFile(std::FILE* file, const std::string& name, char* delimiter) {
+  csv_parser parser{};
+  csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
+  Parsed parsed;
+  std::array<char, 1 << 16> buffer;
+  bool is_good = true;
+  std::size_t size = 0;
+  LineCounter lines(&parsed);
+  while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file)) > 0) {
+    std::string_view rest(buffer.data(), size);
+    *delimiter = *delimiter == CsvTable::kAnyDelimiter ? GuessDelimiter(rest) : *delimiter;
+    csv_set_delim(&parser, static_cast<unsigned char>(*delimiter));
+    while (is_good && !rest.empty()) {
+      const std::string_view piece = rest.substr(0, std::min(rest.find('\n'), rest.size() - 1) + 1);
+      is_good = csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) ==
+                piece.size();
+      lines.Pass(piece);
+      rest.remove_prefix(piece.size());
+    }
+  }
+  is_good = is_good && csv_fini(&parser, TakeCell, TakeRow, &parsed) == 0;
+  const int error = csv_error(&parser);
+  csv_free(&parser);
+  if (!is_good) {
+    return Fail(ErrorCode::kInvalid, csv_strerror(error), fmt::format("{}:{}", name, parsed.line),
+                "write a quote inside a cell twice, and close each quoted cell");
+  }
+  return parsed;
+}
+
 }  // namespace
 
 std::optional<double> ParseNumber(std::string_view text) {
@@ -110,61 +148,32 @@ Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimite
   if (file == nullptr) {
     return Fail(ErrorCode::kUnreadable, "cannot be read", path.string(), "check its permissions");
   }
-  csv_parser parser{};
-  csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
-  Parsed parsed;
-  std::array<char, 1 << 16> buffer;
-  bool is_good = true;
-  std::size_t size = 0;
-  LineCounter lines(&parsed);
-  while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) {
-    std::string_view rest(buffer.data(), size);
-    if (delimiter == kAnyDelimiter) {
-      const std::string_view first = rest.substr(0, rest.find('\n'));
-      delimiter =
-          first.find(';') != std::string_view::npos && first.find(',') == std::string_view::npos
-              ? ';'
-              : ',';
-    }
-    csv_set_delim(&parser, static_cast<unsigned char>(delimiter));
-    while (is_good && !rest.empty()) {
-      const std::string_view piece = rest.substr(0, std::min(rest.find('\n'), rest.size() - 1) + 1);
-      is_good = csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) ==
-                piece.size();
-      lines.Pass(piece);
-      rest.remove_prefix(piece.size());
-    }
+  auto parsed = ParseFile(file.get(), path.string(), &delimiter);
+  if (!parsed) {
+    return Unexpected(parsed.error());
   }
-  is_good = is_good && csv_fini(&parser, TakeCell, TakeRow, &parsed) == 0;
-  const int error = csv_error(&parser);
-  csv_free(&parser);
-  if (!is_good) {
-    return Fail(ErrorCode::kInvalid, csv_strerror(error),
-                fmt::format("{}:{}", path.string(), parsed.line),
-                "write a quote inside a cell twice, and close each quoted cell");
-  }
-  if (parsed.rows.empty()) {
+  if (parsed->rows.empty()) {
     return Fail(ErrorCode::kInvalid, "is empty", path.string(),
                 "add a first line with the names of the columns");
   }
   CsvTable table;
   table.delimiter_ = delimiter;
-  table.columns_ = std::move(parsed.rows.front());
+  table.columns_ = std::move(parsed->rows.front());
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (table.columns_.front().starts_with(kByteOrderMark)) {
     table.columns_.front().erase(0, kByteOrderMark.size());
   }
-  for (std::size_t i = 1; i < parsed.rows.size(); ++i) {
-    if (parsed.rows[i].size() > table.columns_.size()) {
+  for (std::size_t i = 1; i < parsed->rows.size(); ++i) {
+    if (parsed->rows[i].size() > table.columns_.size()) {
       return Fail(ErrorCode::kInvalid,
-                  fmt::format("has {} cells, but there are {} columns", parsed.rows[i].size(),
+                  fmt::format("has {} cells, but there are {} columns", parsed->rows[i].size(),
                               table.columns_.size()),
-                  fmt::format("{}:{}", path.string(), parsed.lines[i]),
+                  fmt::format("{}:{}", path.string(), parsed->lines[i]),
                   fmt::format("put cells with '{}' in quotes", delimiter));
     }
-    parsed.rows[i].resize(table.columns_.size());
-    table.rows_.push_back(std::move(parsed.rows[i]));
-    table.lines_.push_back(parsed.lines[i]);
+    parsed->rows[i].resize(table.columns_.size());
+    table.rows_.push_back(std::move(parsed->rows[i]));
+    table.lines_.push_back(parsed->lines[i]);
   }
   return table;
 }

@@ -328,25 +328,22 @@ void CheckCommandWord(const CLI::App& fit, const std::string& word) {
   }
 }
 
-}  // namespace
+constexpr const char* kFitFooter =
+    "Examples:\n"
+    "  hvas fit 40 H7/g6\n"
+    "  hvas fit 1.5in RC4\n"
+    "  hvas fit 40 H7/p6 --length 50 --hub 80 --material S355 --curve force.svg\n"
+    "  hvas fit 40 H7/k6 --length 50 --rz 6.3 --population 1e6 --press-limit 20000\n"
+    "  hvas fit 40 H7/p6 35 H7/k6 --length 20,30 --start 0,40 --population 1e6\n"
+    "  hvas fit 40 H7/g6 --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
+    "  hvas fit 40 H7/p6 --length 50 --hub-material \"S355 Re=400\" --room 25\n"
+    "  hvas fit design --nominal 40 --length 50 --hub 80 --torque 200\n"
+    "  hvas fit paper --curve figure8.svg\n"
+    "  hvas fit limits --batch classes.csv -o limits.csv\n"
+    "  hvas fit search --nominal 40 --min 5 --max 60";
 
-void AddFit(CLI::App* app, int* status) {
-  CLI::App* fit = app->add_subcommand("fit", "Limits, press fits and insertion of ISO 286 fits");
-  auto a = std::make_shared<FitArguments>();
-  AddFitArguments(fit, a.get());
-  fit->footer(
-      "Examples:\n"
-      "  hvas fit 40 H7/g6\n"
-      "  hvas fit 1.5in RC4\n"
-      "  hvas fit 40 H7/p6 --length 50 --hub 80 --material S355 --curve force.svg\n"
-      "  hvas fit 40 H7/k6 --length 50 --rz 6.3 --population 1e6 --press-limit 20000\n"
-      "  hvas fit 40 H7/p6 35 H7/k6 --length 20,30 --start 0,40 --population 1e6\n"
-      "  hvas fit 40 H7/g6 --length 50 --jamming jam.svg --at 20 --load 5,20,100\n"
-      "  hvas fit 40 H7/p6 --length 50 --hub-material \"S355 Re=400\" --room 25\n"
-      "  hvas fit design --nominal 40 --length 50 --hub 80 --torque 200\n"
-      "  hvas fit paper --curve figure8.svg\n"
-      "  hvas fit limits --batch classes.csv -o limits.csv\n"
-      "  hvas fit search --nominal 40 --min 5 --max 60");
+/** The commands that calculate tables. */
+void AddTables(CLI::App* fit, int* status) {
   AddBatch(fit, "limits", "Calculate limits for a table of tolerance classes",
            "Input columns: nominal_mm, class. Output columns: kind, upper_um, lower_um; empty, "
            "with a reason, where the standard defines no limits.",
@@ -363,6 +360,16 @@ void AddFit(CLI::App* app, int* status) {
            "inputs. Whether a load jams: jamming_point with Fx, Fz, M, l, r, mu; output slides. "
            "The wedging tilt: wedging with D, d, mu; output theta_w.",
            AddInsertions, status);
+}
+
+}  // namespace
+
+void AddFit(CLI::App* app, int* status) {
+  CLI::App* fit = app->add_subcommand("fit", "Limits, press fits and insertion of ISO 286 fits");
+  auto a = std::make_shared<FitArguments>();
+  AddFitArguments(fit, a.get());
+  fit->footer(kFitFooter);
+  AddTables(fit, status);
   AddSearch(fit, status);
   AddFitIdentify(fit, status);
   AddPaper(fit, status);

@@ -334,9 +334,7 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
       ->group(group);
 }
 
-}  // namespace
-
-void AddFitArguments(CLI::App* fit, FitArguments* a) {
+void AddSizeArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("fit", a->fits,
                   "Diameter and classes: 40 H7/p6, 40 H7, 1.5in H7/g6, 1.5in RC4; several fits "
                   "belong to one pair of parts");
@@ -370,6 +368,9 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
                   "Radial width of the chamfers of hole and shaft together [mm]")
       ->check(NotNegative())
       ->transform(Millimetres());
+}
+
+void AddMaterialArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--material", a->material,
                   "Material of both parts [S355]; with values of your own behind the name or "
                   "alone: E=210 nu=0.3 Re=355 alpha=11 (GPa, MPa, 1e-6/K)");
@@ -387,6 +388,9 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_flag("--shrunk", a->is_shrunk,
                 "Use the friction of a joint by heat or cold instead of one pressed in; implied by "
                 "--hub-temp and --shaft-temp");
+}
+
+void AddRoughnessArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--rz", a->rz_um, "Roughness Rz of both surfaces [um]")
       ->check(NotNegative())
       ->capture_default_str();
@@ -398,6 +402,9 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
          "Loss of interference by smoothing: none, din2001 (0.8) or din2017 (0.4 of the sum of Rz)")
       ->check(CLI::IsMember({"none", "din2001", "din2017"}))
       ->capture_default_str();
+}
+
+void AddJoiningArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option(
          "--hub-temp", a->hub_c,
          "Temperature of the hub when joining [C]; adds the play, and whether the joint sticks")
@@ -411,18 +418,15 @@ void AddFitArguments(CLI::App* fit, FitArguments* a) {
   fit->add_option("--join-speed", a->join_speed_mm_s, "Speed of joining by heat or cold [mm/s]")
       ->check(Positive())
       ->capture_default_str();
-  AddUnitOption(fit, &a->unit);
-  AddJsonFlag(fit, &a->is_json, "fit");
-  AddBatchArguments(fit, a);
-  AddPlotArguments(fit, a);
 }
 
-Result<void> CheckEffects(const CLI::App& fit) {
-  struct Need {
-    const char* option;
-    std::vector<const char*> one_of;
-  };
+/** An option that has an effect only with another one. */
+struct Need {
+  const char* option;
+  std::vector<const char*> one_of;
+};
 
+const std::vector<Need>& ListNeeds() {
   static const std::vector<const char*> batch{"--population", "--curve"};
   static const std::vector<Need> needs{{"--hub", {"--length"}},
                                        {"--bore", {"--length"}},
@@ -461,15 +465,11 @@ Result<void> CheckEffects(const CLI::App& fit) {
                                        {"--along", {"--curve"}},
                                        {"--at", {"--jamming"}},
                                        {"--load", {"--jamming"}}};
-  const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
-  for (const Need& need : needs) {
-    if (has(need.option) && std::none_of(need.one_of.begin(), need.one_of.end(), has)) {
-      const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("{} has no effect without {}", need.option, needed), {},
-                  fmt::format("give {}, or omit {}", needed, need.option));
-    }
-  }
+  return needs;
+}
+
+/** Options that have no effect where all of others are given. */
+const std::vector<std::pair<const char*, std::vector<const char*>>>& ListOverruled() {
   static const std::vector<std::pair<const char*, std::vector<const char*>>> overruled{
       {"--bore", {"--breadth"}},
       {"--hub-temp", {"--breadth"}},
@@ -481,7 +481,33 @@ Result<void> CheckEffects(const CLI::App& fit) {
       {"--sizes-spread", {"--sizes"}},
       {"--sizes-spread", {"--cp"}},
       {"--sizes-spread", {"--cpk"}}};
-  for (const auto& [option, others] : overruled) {
+  return overruled;
+}
+
+}  // namespace
+
+void AddFitArguments(CLI::App* fit, FitArguments* a) {
+  AddSizeArguments(fit, a);
+  AddMaterialArguments(fit, a);
+  AddRoughnessArguments(fit, a);
+  AddJoiningArguments(fit, a);
+  AddUnitOption(fit, &a->unit);
+  AddJsonFlag(fit, &a->is_json, "fit");
+  AddBatchArguments(fit, a);
+  AddPlotArguments(fit, a);
+}
+
+Result<void> CheckEffects(const CLI::App& fit) {
+  const auto has = [&fit](const char* name) { return fit.count(name) > 0; };
+  for (const Need& need : ListNeeds()) {
+    if (has(need.option) && std::none_of(need.one_of.begin(), need.one_of.end(), has)) {
+      const std::string needed = fmt::format("{}", fmt::join(need.one_of, " or "));
+      return Fail(ErrorCode::kInvalid,
+                  fmt::format("{} has no effect without {}", need.option, needed), {},
+                  fmt::format("give {}, or omit {}", needed, need.option));
+    }
+  }
+  for (const auto& [option, others] : ListOverruled()) {
     if (has(option) && std::all_of(others.begin(), others.end(), has)) {
       return Fail(
           ErrorCode::kInvalid,
