@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Common.hxx>
@@ -136,36 +137,44 @@ const Relations::Features& Relations::FeaturesOf(const PartDefinition& part) {
   return features_.emplace(&part, std::move(features)).first->second;
 }
 
+std::optional<DrawnMate> Relations::MatchPair(const CylinderFeature& ca, const CylinderFeature& cb,
+                                              const gp_Trsf& X_AB) {
+  const gp_Ax1 axis_b = cb.axis.Transformed(X_AB);
+  if (ca.is_hole == cb.is_hole || !SameLine(ca.axis, axis_b)) return std::nullopt;
+  const double hole = ca.is_hole ? ca.radius : cb.radius;
+  const double shaft = ca.is_hole ? cb.radius : ca.radius;
+  if (hole - shaft < -kLineTolerance || hole - shaft > kLargestRadialClearance) return std::nullopt;
+  const auto at = [&](double s) {
+    return Along(ca.axis, axis_b.Location().Translated(gp_Vec(axis_b.Direction()) * s));
+  };
+  const double low_b = std::min(at(cb.low), at(cb.high));
+  const double high_b = std::max(at(cb.low), at(cb.high));
+  const double overlap = std::min(ca.high, high_b) - std::max(ca.low, low_b);
+  if (overlap < kLeastEngagement) return std::nullopt;
+  return DrawnMate{DrawnMate::Kind::kAxisHole, ca.is_hole, 2 * hole, 2 * shaft, overlap, 0};
+}
+
 std::vector<DrawnMate> Relations::MatchCylinders(const Features& a, const Features& b,
                                                  const gp_Trsf& X_AB) {
   std::vector<DrawnMate> mates;
   std::vector<gp_Ax1> lines;
   for (const CylinderFeature& ca : a.cylinders) {
     for (const CylinderFeature& cb : b.cylinders) {
-      const gp_Ax1 axis_b = cb.axis.Transformed(X_AB);
-      if (ca.is_hole == cb.is_hole || !SameLine(ca.axis, axis_b)) continue;
-      const double hole = ca.is_hole ? ca.radius : cb.radius;
-      const double shaft = ca.is_hole ? cb.radius : ca.radius;
-      if (hole - shaft < -kLineTolerance || hole - shaft > kLargestRadialClearance) continue;
-      const auto at = [&](double s) {
-        return Along(ca.axis, axis_b.Location().Translated(gp_Vec(axis_b.Direction()) * s));
-      };
-      const double low_b = std::min(at(cb.low), at(cb.high));
-      const double high_b = std::max(at(cb.low), at(cb.high));
-      const double overlap = std::min(ca.high, high_b) - std::max(ca.low, low_b);
-      if (overlap < kLeastEngagement) continue;
-      const DrawnMate mate{DrawnMate::Kind::kAxisHole, ca.is_hole, 2 * hole, 2 * shaft, overlap, 0};
+      const std::optional<DrawnMate> mate = MatchPair(ca, cb, X_AB);
+      if (!mate) continue;
       const auto same =
           std::ranges::find_if(lines, [&](const gp_Ax1& line) { return SameLine(line, ca.axis); });
       if (same == lines.end()) {
         lines.push_back(ca.axis);
-        mates.push_back(mate);
+        mates.push_back(*mate);
         continue;
       }
       DrawnMate& best = mates[static_cast<std::size_t>(same - lines.begin())];
-      const double gain = (best.hole_diameter - best.shaft_diameter) - 2 * (hole - shaft);
-      if (gain > kLineTolerance || (gain > -kLineTolerance && overlap > best.overlap_length)) {
-        best = mate;
+      const double gain =
+          (best.hole_diameter - best.shaft_diameter) - (mate->hole_diameter - mate->shaft_diameter);
+      if (gain > kLineTolerance ||
+          (gain > -kLineTolerance && mate->overlap_length > best.overlap_length)) {
+        best = *mate;
       }
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,9 @@ class Relations {
 
   const Features& FeaturesOf(const PartDefinition& part);
   static void AddCylinder(const TopoDS_Face& face, std::vector<CylinderFeature>& cylinders);
+  /** Finds the mate of two cylinders on one line that engage; none where they do not. */
+  static std::optional<DrawnMate> MatchPair(const CylinderFeature& ca, const CylinderFeature& cb,
+                                            const gp_Trsf& X_AB);
   static std::vector<DrawnMate> MatchCylinders(const Features& a, const Features& b,
                                                const gp_Trsf& X_AB);
   static std::vector<DrawnMate> MatchPlanes(const Features& a, const Features& b,

@@ -199,6 +199,22 @@ HandExchange HapticTick::Exchange(std::size_t to) const noexcept {
   return exchange;
 }
 
+DeviceOutput::Input HapticTick::MakeOutputInput(const spatial::Wrench& F_H_W, bool is_usable,
+                                                const DisplayedPart* helped) noexcept {
+  DeviceOutput::Input input;
+  input.F_H_W = F_H_W;
+  input.is_usable = is_usable;
+  input.has_engaged = std::exchange(has_engaged_, false);
+  if (displayed_.part != nullptr) {
+    input.stored = CalcStoredEnergy();
+    input.stored_turning = coupling_.CalcTurningEnergy(displayed_);
+  } else if (helped != nullptr) {
+    input.stored = coupling_.CalcEnergy(*helped) / options_.workspace.mapping.scale;
+    input.stored_turning = coupling_.CalcTurningEnergy(*helped);
+  }
+  return input;
+}
+
 TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext& context,
                             std::span<const HandExchange> others) noexcept {
   TickOutput out;
@@ -245,18 +261,8 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   static_cast<ContactAccount&>(out) = contacts_.End();
   out.state = helped != nullptr ? HoldState::kFree : state_;
   out.workspace = workspace_.mapping();
-  DeviceOutput::Input input;
-  input.F_H_W = out.F_H_W;
-  input.is_usable = is_usable;
-  input.has_engaged = std::exchange(has_engaged_, false);
-  if (part != nullptr) {
-    input.stored = CalcStoredEnergy();
-    input.stored_turning = coupling_.CalcTurningEnergy(displayed_);
-  } else if (helped != nullptr) {
-    input.stored = coupling_.CalcEnergy(*helped) / options_.workspace.mapping.scale;
-    input.stored_turning = coupling_.CalcTurningEnergy(*helped);
-  }
-  out.F_H_D = output_.Pass(state, context, workspace_, input);
+  out.F_H_D =
+      output_.Pass(state, context, workspace_, MakeOutputInput(out.F_H_W, is_usable, helped));
   out.F_H_W = {out.workspace.X_WD.q() * out.F_H_D.t, out.workspace.X_WD.q() * out.F_H_D.f};
   out.energy = output_.passivity().force().account();
   out.turning_energy = output_.passivity().torque().account();

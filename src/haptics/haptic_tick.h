@@ -125,6 +125,9 @@ class HapticTick {
   [[nodiscard]] const TickOptions& options() const noexcept { return options_; }
 
  private:
+  /** Makes what goes to the device's output: the wrench, with the energy stored behind it. */
+  [[nodiscard]] DeviceOutput::Input MakeOutputInput(const spatial::Wrench& F_H_W, bool is_usable,
+                                                    const DisplayedPart* helped) noexcept;
   void ChoosePlace(std::span<const HandExchange> others) noexcept;
   void GoTo(const HeldPart& place) noexcept;
   /** Weight of a part as the hand feels it [N]. */

@@ -285,63 +285,81 @@ void MateGuide::UpdateAlignment(const HeldMate& mate, MateState* state) noexcept
   state->is_aligned = state->ramp >= 1 && is_across && g.angle < tilt_free + slack * kAlignedAngle;
 }
 
+void MateGuide::AddTiltSpring(const HeldMate& mate, const MateState& state, double guided,
+                              const GuidanceOptions& options, ConstraintSolver* solver) noexcept {
+  const MateGeometry& g = state.geometry;
+  const double tilt_free = mates::HasFit(mate.capture.kind) ? FreeTilt(mate, g) : 0;
+  const double tilt = g.tilt_W.norm();
+  if (!mates::HoldsDirection(mate.capture.kind) || (tilt <= tilt_free && tilt_free != 0)) {
+    return;
+  }
+  const double excess = tilt - tilt_free;
+  const double k =
+      Bounded(guided * RampedStiffness(kFirstRotStiffness, FullRotStiffness(mate, g, options.k_rot),
+                                       state.ramp),
+              excess, guided * options.max_torque);
+  const double part_of = tilt > 0 ? excess / tilt : 1.0;
+  const Mat3 across = Mat3::Identity() - g.axis_W * g.axis_W.transpose();
+  solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
+}
+
+void MateGuide::AddWallSpring(const HeldMate& mate, const MateState& state,
+                              const GuidanceOptions& options, ConstraintSolver* solver) noexcept {
+  if (mate.is_stop) {
+    return;
+  }
+  const MateGeometry& g = state.geometry;
+  const double k = Bounded(RampedStiffness(kFirstStiffness, options.k_lin, state.ramp), g.distance,
+                           options.max_force);
+  const Mat3 along = g.axis_W * g.axis_W.transpose();
+  solver->AddPointSpring(g.p_WQ, -k * g.offset_W, k * along);
+}
+
+void MateGuide::AddOffsetSpring(const HeldMate& mate, const MateState& state, double guided,
+                                const GuidanceOptions& options, ConstraintSolver* solver) noexcept {
+  // Potential k (r - S)^2 / 2 outside the clearance space, W(5); its exact Hessian is
+  // k [(1 - S/r)(I - a a^T) + (S/r) e e^T].
+  const MateGeometry& g = state.geometry;
+  const double free = FreeRadius(mate, g);
+  const double r = g.distance;
+  if (r <= free && free != 0) {
+    return;
+  }
+  const double k = Bounded(
+      guided * RampedStiffness(kFirstStiffness, FullStiffness(mate, g, options.k_lin), state.ramp),
+      r - free, guided * options.max_force);
+  const double ratio = r > 0 ? free / r : 0.0;
+  const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
+  if (g.engaged > 0 && mates::HasFit(mate.capture.kind)) {
+    lateral_force_ += k * (r - free);
+  }
+  const Mat3 along = g.axis_W * g.axis_W.transpose();
+  const Mat3 whole = Mat3::Identity();
+  const Mat3 across = whole - along;
+  const Mat3& held = mates::IsCentre(mate.capture.kind)      ? whole
+                     : mates::HoldsAcross(mate.capture.kind) ? across
+                                                             : along;
+  solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
+                         k * ((1 - ratio) * held + ratio * e * e.transpose()));
+}
+
 void MateGuide::AddSprings(const HeldPart& part, const GuidanceOptions& options,
                            ConstraintSolver* solver) noexcept {
   lateral_force_ = 0;
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
     const MateState& state = mates_[i];
-    if (state.ramp <= 0) {
+    // In the hole contact takes over, over the depth in which the play opens.
+    const double guided = state.is_bore ? 1 - std::min(1.0, state.geometry.engaged / kOpening) : 1;
+    if (state.ramp <= 0 || guided <= 0) {
       continue;
     }
     const HeldMate& mate = part.mates[i];
-    const MateGeometry& g = state.geometry;
-    const Mat3 along = g.axis_W * g.axis_W.transpose();
-    const Mat3 whole = Mat3::Identity();
-    const Mat3 across = whole - along;
-    // In the hole contact takes over, over the depth in which the play opens.
-    const double guided = state.is_bore ? 1 - std::min(1.0, g.engaged / kOpening) : 1;
-    if (guided <= 0) {
-      continue;
-    }
-    const double tilt_free = mates::HasFit(mate.capture.kind) ? FreeTilt(mate, g) : 0;
-    const double tilt = g.tilt_W.norm();
-    if (mates::HoldsDirection(mate.capture.kind) && (tilt > tilt_free || tilt_free == 0)) {
-      const double excess = tilt - tilt_free;
-      const double k =
-          Bounded(guided * RampedStiffness(kFirstRotStiffness,
-                                           FullRotStiffness(mate, g, options.k_rot), state.ramp),
-                  excess, guided * options.max_torque);
-      const double part_of = tilt > 0 ? excess / tilt : 1.0;
-      solver->AddAngularSpring(k * part_of * g.tilt_W, k * across);
-    }
+    AddTiltSpring(mate, state, guided, options, solver);
     if (mate.capture.kind == MateKind::kFaceFace) {
-      if (!mate.is_stop) {
-        const double k = Bounded(RampedStiffness(kFirstStiffness, options.k_lin, state.ramp),
-                                 g.distance, options.max_force);
-        solver->AddPointSpring(g.p_WQ, -k * g.offset_W, k * along);
-      }
-      continue;
-    }
-    // Potential k (r - S)^2 / 2 outside the clearance space, W(5); its exact Hessian is
-    // k [(1 - S/r)(I - a a^T) + (S/r) e e^T].
-    const double free = FreeRadius(mate, g);
-    const double r = g.distance;
-    if (r > free || free == 0) {
-      const double k =
-          Bounded(guided * RampedStiffness(kFirstStiffness, FullStiffness(mate, g, options.k_lin),
-                                           state.ramp),
-                  r - free, guided * options.max_force);
-      const double ratio = r > 0 ? free / r : 0.0;
-      const Vec3 e = r > 0 ? Vec3(g.offset_W / r) : Vec3::Zero();
-      if (g.engaged > 0 && mates::HasFit(mate.capture.kind)) {
-        lateral_force_ += k * (r - free);
-      }
-      const Mat3& held = mates::IsCentre(mate.capture.kind)      ? whole
-                         : mates::HoldsAcross(mate.capture.kind) ? across
-                                                                 : along;
-      solver->AddPointSpring(g.p_WQ, -k * (r - free) * e,
-                             k * ((1 - ratio) * held + ratio * e * e.transpose()));
+      AddWallSpring(mate, state, options, solver);
+    } else {
+      AddOffsetSpring(mate, state, guided, options, solver);
     }
   }
 }

@@ -118,6 +118,16 @@ class MateGuide {
   };
 
   static void UpdateAlignment(const HeldMate& mate, MateState* state) noexcept;
+  /** Adds the spring that turns the part onto the mate's direction. @param guided  Share of the
+   spring that is left in a hole. */
+  static void AddTiltSpring(const HeldMate& mate, const MateState& state, double guided,
+                            const GuidanceOptions& options, ConstraintSolver* solver) noexcept;
+  /** Adds the spring that pulls two planes together. */
+  static void AddWallSpring(const HeldMate& mate, const MateState& state,
+                            const GuidanceOptions& options, ConstraintSolver* solver) noexcept;
+  /** Adds the spring that pulls the part onto the mate's axis or centre. */
+  void AddOffsetSpring(const HeldMate& mate, const MateState& state, double guided,
+                       const GuidanceOptions& options, ConstraintSolver* solver) noexcept;
   void ChooseBores(const HeldPart& part, const GuidanceOptions& options) noexcept;
 
   std::array<MateState, kMaxMates> mates_{};

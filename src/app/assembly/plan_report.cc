@@ -369,6 +369,31 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
   return json;
 }
 
+/** What stands below a row: what comes before it, what is done with it, and what it needs. */
+std::string DescribeBelow(const PlanReport& report, const MoveRow& row) {
+  std::string below;
+  if (!row.arrows.empty()) {
+    const OrderArrow& first = row.arrows.front();
+    below = fmt::format("before {}: {}", PathOfLater(report, first), DescribeReason(report, first));
+    below +=
+        row.arrows.size() > 1 ? fmt::format("; and before {} more", row.arrows.size() - 1) : "";
+  }
+  if (!row.aside.empty()) {
+    below = fmt::format("with {}{}{}", row.aside, below.empty() ? "" : "; ", below);
+  }
+  if (!row.holds.empty()) {
+    below += (below.empty() ? "hold " : "; hold ") + row.holds;
+  }
+  if (!row.turned.empty()) {
+    below = fmt::format("turn the product first, {} upwards{}{}", row.turned,
+                        below.empty() ? "" : "; ", below);
+  }
+  if (!row.in_tool_space.empty()) {
+    below += (below.empty() ? "" : "; ") + row.in_tool_space;
+  }
+  return below;
+}
+
 void PrintPlanTable(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
@@ -376,28 +401,8 @@ void PrintPlanTable(const PlanReport& report) {
   table.Add({"  0", PathOf(model, simulation::FindBase(model.sequence)), "base", ""});
   int number = 0;
   for (const MoveRow& row : ListRows(report)) {
-    std::string below;
-    if (!row.arrows.empty()) {
-      const OrderArrow& first = row.arrows.front();
-      below =
-          fmt::format("before {}: {}", PathOfLater(report, first), DescribeReason(report, first));
-      below +=
-          row.arrows.size() > 1 ? fmt::format("; and before {} more", row.arrows.size() - 1) : "";
-    }
-    if (!row.aside.empty()) {
-      below = fmt::format("with {}{}{}", row.aside, below.empty() ? "" : "; ", below);
-    }
-    if (!row.holds.empty()) {
-      below += (below.empty() ? "hold " : "; hold ") + row.holds;
-    }
-    if (!row.turned.empty()) {
-      below = fmt::format("turn the product first, {} upwards{}{}", row.turned,
-                          below.empty() ? "" : "; ", below);
-    }
-    if (!row.in_tool_space.empty()) {
-      below += (below.empty() ? "" : "; ") + row.in_tool_space;
-    }
-    table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool}, below);
+    table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool},
+              DescribeBelow(report, row));
   }
   fmt::print("{}\n", table.ToText());
   const std::string fixture = DescribeFixture(report);

@@ -238,14 +238,6 @@ class JsonRuns {
     const std::string record = (folder_ / "run.hvasrec").string();
     const std::string way = (folder_ / "way.csv").string();
     const std::string swept = (folder_ / "swept.stl").string();
-    const std::string study = (folder_ / "study").string();
-    const std::string answers =
-        folder_
-            .Write("answers.csv",
-                   "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n2,H7/g6,H7/g6\n"
-                   "2,H7/p6,H7/p6\n")
-            .string();
-    const std::string results = HVAS_SOURCE_DIR "/data/studies/identification-2016.csv";
     const std::string bushing = ProductFile("bushing");
     Add({"assemble", bushing, "--record", record}, "assemble");
     Add({"assemble", bushing, "--limit", "5"}, "assemble", 2);
@@ -273,6 +265,17 @@ class JsonRuns {
     Add({"tool", ProductFile("gear_pump")}, "tool");
     Add({"devices"}, "devices");
     Add({"doctor", "--seconds", "0.2"}, "doctor", kAnyStatus);
+    AddFits();
+    AddStudies();
+    AddCampaign(bushing);
+  }
+
+  static constexpr int kAnyStatus = -1;
+
+  [[nodiscard]] const std::vector<JsonRun>& runs() const { return runs_; }
+
+ private:
+  void AddFits() {
     Add({"fit", "40", "H7"}, "fit");
     Add({"fit", "40", "H7/p6", "--length", "50", "--hub", "80", "--hub-temp", "200"}, "fit");
     Add({"fit", "40", "H7/g6", "35", "H7/k6", "--length", "50", "--population", "2000"}, "fit");
@@ -288,6 +291,17 @@ class JsonRuns {
     Add({"fit", "design", "--nominal", "40", "--length", "50", "--torque", "50", "--hub-material",
          "GJL-250", "--hub", "100"},
         "fit_design");
+  }
+
+  void AddStudies() {
+    const std::string study = (folder_ / "study").string();
+    const std::string answers =
+        folder_
+            .Write("answers.csv",
+                   "participant,shown,answered\n1,H7/g6,H7/g6\n1,H7/p6,H7/g6\n2,H7/g6,H7/g6\n"
+                   "2,H7/p6,H7/p6\n")
+            .string();
+    const std::string results = HVAS_SOURCE_DIR "/data/studies/identification-2016.csv";
     Add({"study", "analyse", "--table", results, "--of", "15"}, "study_analysis");
     Add({"study", "analyse", "--table", answers}, "study_identification");
     Add({"study", "power", "--means", "0,1", "--sd", "1", "--test", "wilcoxon", "--runs", "200"},
@@ -296,14 +310,8 @@ class JsonRuns {
          "-o", study},
         "study_summary");
     Add({"study", "list", study}, "study_summary");
-    AddCampaign(bushing);
   }
 
-  static constexpr int kAnyStatus = -1;
-
-  [[nodiscard]] const std::vector<JsonRun>& runs() const { return runs_; }
-
- private:
   /** A campaign of the bushing: all shards, then one missing, which is submitted. */
   void AddCampaign(const std::string& product) {
     const std::string plan =

@@ -137,54 +137,73 @@ contact::ShapeSource Join(contact::ShapeSource solid, const contact::ShapeSource
   return solid;
 }
 
-/** A bar [m] along x from -8 to 42 mm, 12 mm wide, from z = 0.05 to 6 mm, with a hole about z.
- Faces: 0 to 3 its sides, 4 below, 5 above, 6 the hole. */
-contact::ShapeSource MakeArm(double hole_radius) {
-  constexpr int kPoints = 180;
-  const Vec3 low(-8e-3, -6e-3, 0.05e-3);
-  const Vec3 high(42e-3, 6e-3, 6e-3);
-  contact::ShapeSource arm;
+const Vec3 kArmLow(-8e-3, -6e-3, 0.05e-3);
+const Vec3 kArmHigh(42e-3, 6e-3, 6e-3);
+
+/** Faces 0 to 3 of a bar are its sides, 4 is below, 5 above, 6 the hole. */
+std::vector<spatial::Surface> MakeArmFaces(double hole_radius) {
+  std::vector<spatial::Surface> faces;
   for (const Vec3& n : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitX()),
                         Vec3(-Vec3::UnitY()), Vec3(-Vec3::UnitZ()), Vec3(Vec3::UnitZ())}) {
-    const Vec3& corner = n.sum() > 0 ? high : low;
-    arm.faces.push_back(
-        {spatial::SurfaceKind::kPlane, n.cwiseAbs().cwiseProduct(corner), n, 0, 0, 1});
+    const Vec3& corner = n.sum() > 0 ? kArmHigh : kArmLow;
+    faces.push_back({spatial::SurfaceKind::kPlane, n.cwiseAbs().cwiseProduct(corner), n, 0, 0, 1});
   }
-  arm.faces.push_back(contact::testing::CylinderZ(hole_radius, -1));
-  // Angles of the corners are among those of the points, so that each piece has one side.
+  faces.push_back(contact::testing::CylinderZ(hole_radius, -1));
+  return faces;
+}
+
+/** Angles of the corners are among those of the points, so that each piece has one side. */
+std::vector<double> ListArmAngles() {
+  constexpr int kPoints = 180;
   std::vector<double> angles;
-  angles.reserve(kPoints + 4);
   for (int i = 0; i < kPoints; ++i) {
     angles.push_back(2 * std::numbers::pi * i / kPoints);
   }
-  for (const Vec3& corner : {high, Vec3(low.x(), high.y(), 0), low, Vec3(high.x(), low.y(), 0)}) {
+  for (const Vec3& corner : {kArmHigh, Vec3(kArmLow.x(), kArmHigh.y(), 0), kArmLow,
+                             Vec3(kArmHigh.x(), kArmLow.y(), 0)}) {
     const double angle = std::atan2(corner.y(), corner.x());
     angles.push_back(angle < 0 ? angle + 2 * std::numbers::pi : angle);
   }
   std::sort(angles.begin(), angles.end());
+  return angles;
+}
+
+/** Distance from the axis to the outline of the bar in a direction [m]. */
+double CalcArmRadius(const Vec3& d) {
+  const double to_x = d.x() == 0 ? 1 : (d.x() > 0 ? kArmHigh.x() : kArmLow.x()) / d.x();
+  const double to_y = d.y() == 0 ? 1 : (d.y() > 0 ? kArmHigh.y() : kArmLow.y()) / d.y();
+  return std::min(to_x, to_y);
+}
+
+std::uint32_t FindArmSide(const std::vector<spatial::Surface>& faces, const Vec3& p) {
+  const auto distance = [&](std::uint32_t f) {
+    return std::abs(faces[f].axis.dot(p - faces[f].origin));
+  };
+  std::uint32_t nearest = 0;
+  for (std::uint32_t face = 1; face < 4; ++face) {
+    nearest = distance(face) < distance(nearest) ? face : nearest;
+  }
+  return nearest;
+}
+
+/** A bar [m] along x from -8 to 42 mm, 12 mm wide, from z = 0.05 to 6 mm, with a hole about z. */
+contact::ShapeSource MakeArm(double hole_radius) {
+  contact::ShapeSource arm;
+  arm.faces = MakeArmFaces(hole_radius);
+  const std::vector<double> angles = ListArmAngles();
   const auto n = static_cast<std::uint32_t>(angles.size());
-  std::vector<std::uint32_t> side;
-  for (const double z : {low.z(), high.z()}) {
+  for (const double z : {kArmLow.z(), kArmHigh.z()}) {
     for (const bool is_outline : {true, false}) {
       for (const double angle : angles) {
         const Vec3 d(std::cos(angle), std::sin(angle), 0);
-        const double to_x = d.x() == 0 ? 1 : (d.x() > 0 ? high.x() : low.x()) / d.x();
-        const double to_y = d.y() == 0 ? 1 : (d.y() > 0 ? high.y() : low.y()) / d.y();
-        const double r = is_outline ? std::min(to_x, to_y) : hole_radius;
+        const double r = is_outline ? CalcArmRadius(d) : hole_radius;
         arm.vertices.emplace_back(r * d + z * Vec3::UnitZ());
       }
     }
   }
+  std::vector<std::uint32_t> side;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const Vec3 middle = 0.5 * (arm.vertices[i] + arm.vertices[(i + 1) % n]);
-    std::uint32_t nearest = 0;
-    for (std::uint32_t face = 1; face < 4; ++face) {
-      const auto distance = [&](std::uint32_t f) {
-        return std::abs(arm.faces[f].axis.dot(middle - arm.faces[f].origin));
-      };
-      nearest = distance(face) < distance(nearest) ? face : nearest;
-    }
-    side.push_back(nearest);
+    side.push_back(FindArmSide(arm.faces, 0.5 * (arm.vertices[i] + arm.vertices[(i + 1) % n])));
   }
   const auto add_band = [&](std::uint32_t a, std::uint32_t b, std::uint32_t face, bool is_side) {
     for (std::uint32_t i = 0; i < n; ++i) {
