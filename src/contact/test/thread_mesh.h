@@ -26,6 +26,21 @@ struct ThreadSize {
   }
 };
 
+/** Adds the vertices of a thread about z, row by row along it, n of them in a turn and in a pitch.
+ */
+inline void AddProfile(const ThreadSize& size, double clearance, int rows, int n,
+                       std::vector<Vec3>* vertices) {
+  for (int k = 0; k <= rows; ++k) {
+    for (int j = 0; j < n; ++j) {
+      const double turn = static_cast<double>(j) / n;
+      const double z = k * size.pitch / n;
+      const double r = size.RadiusAt(z - size.sense * size.pitch * turn) + clearance;
+      const double angle = 2 * std::numbers::pi * turn;
+      vertices->emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+  }
+}
+
 /** A piece of thread about z, from 0 to a height: cut off straight at its ends.
  @param clearance  By how much all of its profile is farther from the axis [m].
  @param outside  Radius of the cylinder about a nut; 0: a bolt.
@@ -35,17 +50,7 @@ inline ShapeSource ThreadMesh(const ThreadSize& size, double height, double clea
   ShapeSource source;
   source.faces.resize(outside > 0 ? 4 : 3);
   const auto rows = static_cast<int>(std::lround(height / size.pitch * n));
-  const auto add = [&source](double r, double angle, double z) {
-    source.vertices.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  };
-  for (int k = 0; k <= rows; ++k) {
-    for (int j = 0; j < n; ++j) {
-      const double turn = static_cast<double>(j) / n;
-      const double z = k * size.pitch / n;
-      add(size.RadiusAt(z - size.sense * size.pitch * turn) + clearance,
-          2 * std::numbers::pi * turn, z);
-    }
-  }
+  AddProfile(size, clearance, rows, n, &source.vertices);
   const auto at = [n](int k, int j) { return static_cast<std::uint32_t>(k * n + (j + n) % n); };
   const auto face = [&](std::uint32_t f, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     // A nut's thread looks the other way.
@@ -78,7 +83,8 @@ inline ShapeSource ThreadMesh(const ThreadSize& size, double height, double clea
   source.faces[3] = {spatial::SurfaceKind::kCylinder, Vec3::Zero(), Vec3::UnitZ(), outside, 0, 1};
   for (const double z : {0.0, height}) {
     for (int j = 0; j < n; ++j) {
-      add(outside, 2 * std::numbers::pi * j / n, z);
+      const double angle = 2 * std::numbers::pi * j / n;
+      source.vertices.emplace_back(outside * std::cos(angle), outside * std::sin(angle), z);
     }
   }
   const auto low = [&](int j) { return first + static_cast<std::uint32_t>((j + n) % n); };
