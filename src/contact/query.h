@@ -182,7 +182,7 @@ class BodyQuery {
     bool remembers;           ///< Bounds of the distance are kept from query to query.
     LeafChoice tested{};      ///< Leaves and points of the shell that were tested.
     HitBuffer hits{};         ///< Samples that may be near.
-    std::uint32_t stride{1};  ///< Of how many hits that are not decided at once one is refined.
+    std::uint32_t stride{1};  ///< One of so many undecided hits is refined.
     float sparsity{1};        ///< Samples that each tested one stands for.
   };
 
