@@ -289,13 +289,13 @@ double BlockBuilder::FindDistance(const NearList& list, const Vec3& p, double of
 }
 
 struct BlockBuilder::OctantFaces {
-  const FewFaces<kMostFaces>& few;
+  std::span<const std::uint32_t> faces;
   std::array<Vec3, 8> centres;
   std::array<std::array<double, kMostFaces>, 8> away{};  // The faces' least distances.
   std::array<bool, kMostFaces> is_near{};
   std::size_t near{0};  // How many are.
 
-  [[nodiscard]] bool are_all_near() const { return near == few.count; }
+  [[nodiscard]] bool are_all_near() const { return near == faces.size(); }
 
   void Mark(std::size_t f, bool is) {
     is_near[f] = is;
@@ -310,11 +310,11 @@ double BlockBuilder::CalcLimit(double from_mesh, double radius) const {
 // Measures how far the faces are from the octants' centres, and marks those that are near for sure.
 void BlockBuilder::MeasureFaces(double limit, OctantFaces* faces) const {
   for (std::size_t o = 0; o < 8 && !faces->are_all_near(); ++o) {
-    for (std::size_t f = 0; f < faces->few.count; ++f) {
+    for (std::size_t f = 0; f < faces->faces.size(); ++f) {
       if (faces->is_near[f]) {
         continue;
       }
-      const std::uint32_t face = faces->few.faces[f];
+      const std::uint32_t face = faces->faces[f];
       const auto exact = spatial::CalcDistance(data_.exact.faces[face], faces->centres[o]);
       const double away = std::abs(exact.distance) - data_.exact.deviation[face];
       faces->away[o][f] = away;
@@ -336,7 +336,7 @@ void BlockBuilder::DropFarFaces(const Vec3& centre, double half, double distance
   const double offset = radius * kSlack;  // Of the octants' centres.
   const Bounds limit{CalcLimit(std::max(0.0, distance - offset), radius),
                      CalcLimit(distance + offset, radius)};
-  OctantFaces faces{few, {}};
+  OctantFaces faces{std::span(few.faces).first(few.count), {}};
   for (std::size_t o = 0; o < 8; ++o) {
     faces.centres[o] = centre + 0.5 * half * Corner(static_cast<int>(o));
   }
