@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/units.h"
+#include "product/prismatic_forms.h"
 
 namespace hvas::product {
 namespace {
@@ -88,16 +89,6 @@ Form MakeForm(const Part& part, FormKind kind, const std::vector<Strip>& strips,
   form.origin_B = box.centre();
   form.axis_B = part.faces[form.faces.front().index()].surface.axis;
   return form;
-}
-
-std::vector<bool> MarkFaces(const Part& part, const std::vector<Form>& forms) {
-  std::vector<bool> is_taken(part.faces.size(), false);
-  for (const Form& form : forms) {
-    for (const FaceId face : form.faces) {
-      is_taken[face.index()] = true;
-    }
-  }
-  return is_taken;
 }
 
 double CalcPerimeter(const FaceAdjacency& adjacency, FaceId face) {

@@ -12,6 +12,17 @@
 #include "product/mesh_ray.h"
 
 namespace hvas::product {
+
+std::vector<bool> MarkFaces(const Part& part, const std::vector<Form>& forms) {
+  std::vector<bool> is_marked(part.faces.size(), false);
+  for (const Form& form : forms) {
+    for (const FaceId face : form.faces) {
+      is_marked[face.index()] = true;
+    }
+  }
+  return is_marked;
+}
+
 namespace {
 
 // Half a turn, with what is drawn inexactly (docs/algorithms/features.md, "Other forms"). Choices.
@@ -235,17 +246,6 @@ void AddRoundSlots(const Part& part, const FaceAdjacency& adjacency,
       }
     }
   }
-}
-
-/** Marks the faces of forms. */
-std::vector<bool> MarkFaces(const Part& part, const std::vector<Form>& forms) {
-  std::vector<bool> is_marked(part.faces.size(), false);
-  for (const Form& form : forms) {
-    for (const FaceId face : form.faces) {
-      is_marked[face.index()] = true;
-    }
-  }
-  return is_marked;
 }
 
 std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,

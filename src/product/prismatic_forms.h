@@ -9,6 +9,9 @@
 
 namespace hvas::product {
 
+/** Marks the faces of a part that belong to forms. */
+[[nodiscard]] std::vector<bool> MarkFaces(const Part& part, const std::vector<Form>& forms);
+
 /** Slots: pairs of half cylinders between two flats, half a cylinder with flats that end in the
  open (a U), and channels: two facing flats with a floor between them, open at an end. */
 [[nodiscard]] std::vector<Form> FindSlots(const Part& part, const FaceAdjacency& adjacency,
