@@ -231,6 +231,13 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
     bool is_inside{false};
   };
 
+  /** How fast a part goes in, and how far the hand leads it. */
+  struct Advance {
+    double speed{0};         ///< Of the part inwards, as it is felt [m/s].
+    double wanted_speed{0};  ///< [m/s]
+    double lead{0};          ///< Of the hand's aim before the hand [m].
+  };
+
   void StepInsert(const OperatorInput& input) noexcept;
   /** Ends an insertion that is done, has come as far as it should, or has taken too long. */
   bool EndInsertion(const OperatorInput& input, const Insertion& insertion) noexcept;
@@ -240,8 +247,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   /** Pushes the part on, and yields or searches where it does not move. */
   void PressOn(const OperatorInput& input, const Insertion& insertion) noexcept;
   /** Moves the reference along the path. Returns whether the part is stuck. */
-  bool AdvanceTravel(const OperatorInput& input, const Insertion& insertion, double speed,
-                     double wanted_speed) noexcept;
+  bool AdvanceTravel(const OperatorInput& input, const Insertion& insertion,
+                     const Advance& advance) noexcept;
   void StepWithdraw(const OperatorInput& input) noexcept;
   /** How fast the part, or the hand that holds it, moves as far as the person can tell [m/s]. */
   [[nodiscard]] const Vec3& MotionOf(const OperatorInput& input) const noexcept;

@@ -116,20 +116,21 @@ void SimulatedPerson::BackOff(const Insertion& insertion) noexcept {
   nearest_travel_ = std::numeric_limits<double>::infinity();
   since_nearer_s_ = 0;
   travel_ += options_.insert_speed * dt_;
-  is_backing_off_ = travel_ < back_off_to_ && insertion.hand_travel < back_off_to_ + 3 * kBackOff;
+  is_backing_off_ =
+      insertion.travel < back_off_to_ && insertion.hand_travel < back_off_to_ + 3 * kBackOff;
   look_time_s_ = kLookTime;
   stuck_time_s_ = 0;
   push_ = options_.first_push;
 }
 
 bool SimulatedPerson::AdvanceTravel(const OperatorInput& input, const Insertion& insertion,
-                                    double speed, double wanted_speed) noexcept {
+                                    const Advance& advance) noexcept {
   // The mate has it on the axis: the hand comes there, too, before it goes in.
   const bool is_waiting =
       insertion.is_led_by_hole && !insertion.is_inside && FeelsAside(input, insertion.d);
   // The arm's spring turns the lead into a force.
-  travel_ = std::max(travel_ - (is_waiting ? 0 : wanted_speed * dt_),
-                     insertion.hand_travel - LeadOf(input));
+  travel_ = std::max(travel_ - (is_waiting ? 0 : advance.wanted_speed * dt_),
+                     insertion.hand_travel - advance.lead);
   // The device may give way where the part does not: the eye tells.
   const double stretch =
       insertion.seen_travel - insertion.hand_travel - grip_offset_W_.dot(insertion.d);
@@ -140,26 +141,28 @@ bool SimulatedPerson::AdvanceTravel(const OperatorInput& input, const Insertion&
   // It follows a hand that is pushed back, but not one that leaves.
   travel_ = std::min(travel_, task_.engage_distance + kStandOff + 3 * kBackOff);
   since_nearer_s_ = task_.way == nullptr || IsNearer(insertion.travel) ? 0 : since_nearer_s_ + dt_;
-  const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : speed >= kStillSpeed;
+  const bool is_coming = HasSlotToFind() ? since_nearer_s_ == 0 : advance.speed >= kStillSpeed;
   return !is_waiting &&
          (is_left_behind || (!is_coming && (insertion.is_careful || IsPressing(input))));
 }
 
 void SimulatedPerson::PressOn(const OperatorInput& input, const Insertion& insertion) noexcept {
-  const double speed = -CalcOutwardSpeed(input);
-  const double wanted_speed = insertion.is_careful ? kCarefulSpeed : options_.insert_speed;
-  const bool is_slow = speed < kSlowShare * wanted_speed;
+  Advance advance;
+  advance.speed = -CalcOutwardSpeed(input);
+  advance.wanted_speed = insertion.is_careful ? kCarefulSpeed : options_.insert_speed;
+  const bool is_slow = advance.speed < kSlowShare * advance.wanted_speed;
   const bool is_careful_inside = insertion.is_careful && insertion.is_inside;
-  AdjustPush(CalcAddedForce(input), speed, wanted_speed,
+  AdjustPush(CalcAddedForce(input), advance.speed, advance.wanted_speed,
              insertion.is_careful && !insertion.is_inside);
   push_ = insertion.is_careful ? std::min(push_, options_.careful_push) : push_;
   if (task_.way != nullptr && insertion.is_by_eye && insertion.travel < task_.engage_distance) {
     FollowWayByEye(input, insertion.d);
   }
+  advance.lead = LeadOf(input);  // Before the hand yields, which changes it.
   if (insertion.is_led_by_hole) {
     YieldToHole(input, insertion.d);
   }
-  const bool is_stuck = AdvanceTravel(input, insertion, speed, wanted_speed);
+  const bool is_stuck = AdvanceTravel(input, insertion, advance);
   stuck_time_s_ = is_stuck ? stuck_time_s_ + dt_ : std::max(0.0, stuck_time_s_ - dt_);
   if (input.sees_part && insertion.seen_travel < -kStandOff) {
     // Beyond its place, where nothing stops it: it was missed.
