@@ -75,11 +75,11 @@ EnergyCredit Guidance::AddAttraction(const DisplayedPart& displayed, const MateG
   EnergyCredit credit;
   if (!is_attracting_) {
     is_attracting_ = true;
-    // The pull is a spring of stiffness `strongest` / start that the step takes explicitly. One that
-    // carries the part beyond its place within a tick, with nothing but inertia against it, would
-    // throw it to and fro for good: a part that is so near is there.
-    const spatial::Twist step = solver->CalcFreeMotion(
-        {guidance.attraction_torque * a, guidance.attraction_force * a});
+    // The pull is a spring of stiffness `strongest` / start that the step takes explicitly. One
+    // that carries the part beyond its place within a tick, with nothing but inertia against it,
+    // would throw it to and fro for good: a part that is so near is there.
+    const spatial::Twist step =
+        solver->CalcFreeMotion({guidance.attraction_torque * a, guidance.attraction_force * a});
     const auto start_of = [](double rest, double overshoot) {
       return std::abs(rest) > overshoot ? std::abs(rest) : 0.0;
     };

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "assembly/open_product.h"
@@ -36,12 +37,26 @@ using spatial::Pose;
 constexpr double kRestDistance = 1e-6;  // [m]
 constexpr double kRestAngle = 10e-6;    // [rad]
 constexpr double kRestTime = 0.5;       // [s]
-constexpr double kHalf = 5;             // [s] before the kick, and after it.
-constexpr double kKick = 50e-3;         // [rad]
-constexpr double kPress = 3e-3;         // [m] of the hand into what is in its way.
-constexpr double kLead = 0.5;           // [s] for the hand to get where it stands still.
+/** [J]: of the coupling, stretched by what counts as rest. */
+constexpr double kLeastEnergy = 5e-10;
+/** [s]: weight and mates come in over 0.3 and 0.25 s (docs/algorithms/haptics.md, sections 3, 4).
+ */
+constexpr double kComesIn = 0.3;
+constexpr double kHalf = 5;      // [s] before the kick, and after it.
+constexpr double kKick = 50e-3;  // [rad]
+constexpr double kPress = 3e-3;  // [m] of the hand into what is in its way.
+// Of the displayed part (docs/algorithms/haptics.md, section 2).
+constexpr double kLeastVirtualMass = 0.05;  // [kg]
+constexpr double kBallRadius = 0.02;        // [m]
+constexpr double kLead = 0.5;               // [s] for the hand to get where it stands still.
 
-enum class Place { kFree, kCaptured, kTable, kWall, kHole, kCorner };
+/** How fast what is left of a motion decays in a spring k with a damper b [1/s]. */
+double CalcDecay(double inertia, double b, double k) {
+  const double root = b * b - 4 * inertia * k;
+  return (b - std::sqrt(std::max(0.0, root))) / (2 * inertia);
+}
+
+enum class Place { kFree, kCaptured, kTable, kWall, kHole, kCorner, kAlongWall };
 
 /** Where the part is held, how it gets there, and what it weighs there. */
 struct Still {
@@ -53,14 +68,17 @@ struct Still {
 };
 
 std::ostream& operator<<(std::ostream& out, const Still& still) {
-  static constexpr const char* kNames[] = {"free", "captured", "table", "wall", "hole", "corner"};
+  static constexpr const char* kNames[] = {"free", "captured", "table",     "wall",
+                                           "hole", "corner",   "along wall"};
   return out << kNames[static_cast<int>(still.place)] << ' ' << still.variant << ", start "
              << still.start << ", " << still.rate_hz << " Hz, " << still.mass << " kg";
 }
 
+/** Masses [kg]; 0: as it is. */
+constexpr std::array kMasses{0.0, 1e-3, 0.1, 1.0, 10.0};
+
 /** Twenty poses, with rates and masses that differ from shape to shape. */
 std::vector<Still> ListStills(std::size_t shape, const std::vector<int>& rates) {
-  static constexpr std::array kMasses{0.0, 1e-3, 0.1, 1.0, 10.0};
   static constexpr std::array kStarts{1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 1e-2, 1e-1};
   std::vector<Still> stills;
   const auto add = [&](Place place, int count) {
@@ -167,9 +185,8 @@ class StillHold {
     SequenceStep step = step_;
     if (still_.place == Place::kHole && still_.variant != 2) {
       step.kind = SequenceStep::Kind::kRemove;
-      parts_[step.occurrence.index()] = {simulation::Placement::kPlaced,
-                                         model.bodies[step.occurrence.index()].X_WB_goal,
-                                         {}};
+      parts_[step.occurrence.index()] = {
+          simulation::Placement::kPlaced, model.bodies[step.occurrence.index()].X_WB_goal, {}};
     }
     part_ = *maker.Make(step, false);
     part_.drives.clear();
@@ -203,19 +220,16 @@ class StillHold {
         break;
       }
       case Place::kTable: {
-        const Quat q = still_.variant == 0
-                           ? model.bodies[step_.occurrence.index()].X_WB_start.q()
-                           : RandomTurn();
+        const Quat q = RandomTurn();
         const double low = CalcExtent(*part_.shape, q, Vec3::UnitZ()).first;
         part_.X_WB_start = {q, Vec3(p_free.x(), p_free.y(), table_z_ - low + 1e-3)};
         lead_W_ = Vec3(0, 0, -1e-3 - kPress);
         break;
       }
       case Place::kWall:
+      case Place::kAlongWall:
       case Place::kCorner: {
-        const Quat q = still_.variant == 0
-                           ? model.bodies[step_.occurrence.index()].X_WB_start.q()
-                           : RandomTurn();
+        const Quat q = still_.place == Place::kAlongWall ? X_goal.q() : RandomTurn();
         part_.X_WB_start = {q, p_free};
         AddWall(Vec3::UnitX());
         lead_W_ = Vec3(1e-3 + kPress, 0, 0);
@@ -267,32 +281,63 @@ class StillHold {
       state = out.state;
     }
     const Pose X_end = poses.back();
-    const auto moved = [&](const Pose& X) {
-      return (X * part_.p_BoBcm_B - X_end * part_.p_BoBcm_B).norm();
-    };
-    const auto turned = [&](const Pose& X) {
-      return spatial::RotationBetween(X_end.q(), X.q()).norm();
-    };
-    double last = 0;      // Time of the last unrest [s].
-    double farthest = 0;  // In the second half: it does not come to rest at all.
-    double most_turned = 0;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double d = moved(poses[i]);
-      const double angle = turned(poses[i]);
-      if (d > kRestDistance || angle > kRestAngle) {
+    double last = 0;  // Time of the last unrest [s].
+    double most = 1;  // Largest deviation, in units of what counts as rest.
+    const std::size_t window = poses.size() / 10;
+    std::vector<double> energies(10, 0);  // Largest of each tenth of the time.
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      const Vec3 d = poses[i] * part_.p_BoBcm_B - X_end * part_.p_BoBcm_B;
+      const Vec3 turn = spatial::RotationBetween(X_end.q(), poses[i].q());
+      const double share = std::max(d.norm() / kRestDistance, turn.norm() / kRestAngle);
+      if (share > 1) {
         last = options_.dt * static_cast<double>(i + 1);
       }
-      if (i >= poses.size() / 2) {
-        farthest = std::max(farthest, d);
-        most_turned = std::max(most_turned, angle);
+      most = std::max(most, share);
+      const Vec3 v = (poses[i] * part_.p_BoBcm_B - poses[i - 1] * part_.p_BoBcm_B) / options_.dt;
+      const Vec3 w = spatial::RotationBetween(poses[i - 1].q(), poses[i].q()) / options_.dt;
+      double& energy = energies[std::min(i / window, energies.size() - 1)];
+      energy = std::max(energy, CalcEnergy(poses[i], v, w, d, turn));
+    }
+    std::string trouble;
+    const double allowed = std::max(kRestTime, kComesIn + std::log(most) / CalcSlowestDecay());
+    if (last > allowed) {
+      trouble += when + " at rest after " + std::to_string(last) + " s, not " +
+                 std::to_string(allowed) + " s, in state " + haptics::ToString(state) + "; ";
+    }
+    for (std::size_t i = 2; i < energies.size(); ++i) {
+      if (energies[i] > energies[i - 1] + kLeastEnergy) {
+        trouble += when + " with " + std::to_string(1e9 * energies[i]) + " nJ after " +
+                   std::to_string(1e9 * energies[i - 1]) + " nJ; ";
       }
     }
-    if (last <= kRestTime) {
-      return {};
-    }
-    return when + " at rest after " + std::to_string(last) + " s in state " +
-           haptics::ToString(state) + ", in the second half moved " + std::to_string(1e6 * farthest) +
-           " um, turned " + std::to_string(1e6 * most_turned) + " urad; ";
+    return trouble;
+  }
+
+  /** Of motion and of the coupling, as far as it is not in balance [J]. */
+  [[nodiscard]] double CalcEnergy(const Pose& X_WB, const Vec3& v, const Vec3& w, const Vec3& d,
+                                  const Vec3& turn) const {
+    const haptics::CouplingGains& gains = options_.coupling;
+    const Vec3 w_B = X_WB.q().conjugate() * w;
+    return 0.5 * (virtual_mass() * v.squaredNorm() + w_B.dot(CalcVirtualInertia() * w_B) +
+                  gains.k_lin * d.squaredNorm() + gains.k_rot * turn.squaredNorm());
+  }
+
+  [[nodiscard]] double virtual_mass() const {
+    return std::clamp(part_.mass, kLeastVirtualMass, options_.max_virtual_mass);
+  }
+
+  [[nodiscard]] Mat3 CalcVirtualInertia() const {
+    return virtual_mass() / part_.mass * part_.I_BBcm_B +
+           0.4 * virtual_mass() * kBallRadius * kBallRadius * Mat3::Identity();
+  }
+
+  /** Of the coupling alone, which is what a heavy or long part swings in: what else holds it adds
+   to stiffness, damping and inertia together, and no mixture of two motions decays more slowly. */
+  [[nodiscard]] double CalcSlowestDecay() const {
+    const haptics::CouplingGains& gains = options_.coupling;
+    const Eigen::SelfAdjointEigenSolver<Mat3> moments(CalcVirtualInertia(), Eigen::EigenvaluesOnly);
+    return std::min(CalcDecay(virtual_mass(), gains.b_lin, gains.k_lin),
+                    CalcDecay(moments.eigenvalues().maxCoeff(), gains.b_rot, gains.k_rot));
   }
 
   Vec3 RandomUnit() {
@@ -345,31 +390,62 @@ std::vector<const SequenceStep*> ListShapes(const Model& model) {
   return steps;
 }
 
-void ExpectRest(const std::string& name, const std::vector<std::string>& parts,
-                const std::vector<int>& rates) {
+void ExpectStill(const Model& model, const SequenceStep& step, const Still& still,
+                 std::uint64_t seed) {
+  StillHold hold(model, step, still, seed);
+  EXPECT_EQ(hold.Run(), "") << model.product->occurrences[step.occurrence.index()].path << ", "
+                            << still;
+}
+
+/** @param part  In the path of the parts; empty: all. @param share  How many shapes share the
+ twenty poses. */
+void ExpectRest(const std::string& name, const std::string& part, const std::vector<int>& rates,
+                std::size_t share = 1) {
   const auto model = OpenModel(name);
   std::size_t shape = 0;
   for (const SequenceStep* step : ListShapes(*model)) {
-    const std::string path = model->product->occurrences[step->occurrence.index()].path;
-    const bool is_wanted =
-        parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
-          return path.find(part) != std::string::npos;
-        });
-    if (!is_wanted) {
+    const std::string& path = model->product->occurrences[step->occurrence.index()].path;
+    if (path.find(part) == std::string::npos) {
       continue;
     }
-    std::uint64_t seed = 1;
-    for (const Still& still : ListStills(shape, rates)) {
-      StillHold hold(*model, *step, still, seed++);
-      EXPECT_EQ(hold.Run(), "") << path << ", " << still;
+    const std::vector<Still> stills = ListStills(shape, rates);
+    for (std::size_t i = shape % share; i < stills.size(); i += share) {
+      ExpectStill(*model, *step, stills[i], i + 1);
     }
     ++shape;
   }
 }
 
-TEST(StillnessTest, ABushingComesToRestInAStillHand) {
-  ExpectRest("bushing", {}, {1000});
+TEST(StillnessTest, BushingAndItsShaftComeToRestInAStillHand) {
+  ExpectRest("bushing", "", {1000}, 2);
 }
+
+TEST(StillnessTest, ShaftsOfThePumpComeToRestInAStillHand) {
+  ExpectRest("gear_pump", "gear shaft", {1000}, 2);
+}
+
+// A cylinder that is pressed along a wall rocks by some 10 um and 0.5 mrad: of the contacts of a
+// face only the deepest is moved to the very line of contact (docs/limits.md). It is to be enabled
+// when the others are, too.
+TEST(StillnessTest, DISABLED_ShaftAlongAWallComesToRestInAStillHand) {
+  const auto model = OpenModel("bushing");
+  for (const SequenceStep* step : ListShapes(*model)) {
+    for (const double mass : kMasses) {
+      ExpectStill(*model, *step, {Place::kAlongWall, 0, 0, 1000, mass}, 1);
+    }
+  }
+}
+
+class StillnessReleaseTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(StillnessReleaseTest, EachShapeComesToRestInAStillHandAtAnyRate) {
+  ExpectRest(GetParam(), "", {1000, 2000, 1000, 4000, 1000, 8000});
+}
+
+INSTANTIATE_TEST_SUITE_P(Products, StillnessReleaseTest,
+                         ::testing::Values("bushing", "fit_rig", "frame_500", "gear_pump",
+                                           "loose_twelve", "nut_bolt", "peg_hole", "snap_joint"),
+                         [](const auto& of) { return std::string(of.param); });
 
 }  // namespace
 }  // namespace hvas::assembly
