@@ -225,7 +225,7 @@ class ConstraintSolver {
     return PairOf(patches_[static_cast<std::size_t>(rows.patch)]);
   }
 
-  double mass_{1};  ///< Of body 0, with its inertia.
+  double mass_{1};  ///< Mass of body 0; its inertia is next.
   Mat3 I_W_{Mat3::Identity()};
   Mat6 A_{Mat6::Identity()};
   Vec6 rhs_{Vec6::Zero()};

@@ -165,7 +165,7 @@ class HapticTick {
   HeldResponse response_;
   std::size_t helped_hand_{0};    ///< Hand whose part this one holds as well.
   std::uint32_t helped_hold_{0};  ///< That hold of it; 0: none.
-  bool pulls_along_{false};       ///< In the last tick the hand had a sample, and pulled on it.
+  bool pulls_along_{false};       ///< It pulled on that part in the last tick.
 };
 
 }  // namespace hvas::haptics
