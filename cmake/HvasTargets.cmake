@@ -98,3 +98,16 @@ function(hvas_test name)
   get_filename_component(room ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS};room_${room}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()
+
+# hvas_release_tests(<name> <of> [<filter>]): the tests of a program whose suites are called ...ReleaseTest, as a test of
+# their own: a minute or more of runs over whole products and studies, for `./test all`. The filter chooses some of them.
+function(hvas_release_tests name of)
+  set(filter "*ReleaseTest.*")
+  if(ARGC GREATER 2)
+    set(filter ${ARGV2})
+  endif()
+  add_test(NAME ${name} COMMAND ${of} --gtest_filter=${filter})
+  get_filename_component(room ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set_tests_properties(${name} PROPERTIES LABELS "e2e;release;room_${room}" TIMEOUT 1200)
+  set_tests_properties(${of} PROPERTIES ENVIRONMENT GTEST_FILTER=-*ReleaseTest.*)
+endfunction()

@@ -9,6 +9,8 @@ void ConstraintSolver::Begin(double mass, const Mat3& I_W, const Vec3& p_WCm,
                              const spatial::Twist& V_0, double dt) noexcept {
   BeginFree(dt);
   p_WCm_[0] = p_WCm;
+  mass_ = mass;
+  I_W_ = I_W;
   A_.setZero();
   A_.topLeftCorner<3, 3>() = I_W;
   A_.bottomRightCorner<3, 3>() = mass * Mat3::Identity();
@@ -51,6 +53,11 @@ int ConstraintSolver::AddBody(const Vec3& p_WCm, const Vec6& V, const Mat6& inve
   p_WCm_[i] = p_WCm;
   V_[i] = V;
   return static_cast<int>(i);
+}
+
+spatial::Twist ConstraintSolver::CalcFreeMotion(const spatial::Wrench& F_Cm_W) const noexcept {
+  const double dt2 = dt_ * dt_;
+  return {dt2 * (I_W_.inverse() * F_Cm_W.t), dt2 / mass_ * F_Cm_W.f};
 }
 
 void ConstraintSolver::AddWrench(const spatial::Wrench& F_Cm_W) noexcept {

@@ -86,6 +86,10 @@ class ConstraintSolver {
    how much an impulse changes it, as [turn; shift] about its centre of mass in W. */
   int AddBody(const Vec3& p_WCm, const Vec6& V, const Mat6& inverse) noexcept;
 
+  /** How far a wrench moves body 0 from rest in this step where nothing but its inertia answers, as
+   [turn; shift] of its centre of mass. Valid after Begin. */
+  [[nodiscard]] spatial::Twist CalcFreeMotion(const spatial::Wrench& F_Cm_W) const noexcept;
+
   /** A constant force f at the centre of mass and torque t. */
   void AddWrench(const spatial::Wrench& F_Cm_W) noexcept;
 
@@ -221,6 +225,8 @@ class ConstraintSolver {
     return PairOf(patches_[static_cast<std::size_t>(rows.patch)]);
   }
 
+  double mass_{1};  ///< Mass of body 0; its inertia is next.
+  Mat3 I_W_{Mat3::Identity()};
   Mat6 A_{Mat6::Identity()};
   Vec6 rhs_{Vec6::Zero()};
   Eigen::LLT<Mat6> factor_;

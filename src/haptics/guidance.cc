@@ -75,8 +75,16 @@ EnergyCredit Guidance::AddAttraction(const DisplayedPart& displayed, const MateG
   EnergyCredit credit;
   if (!is_attracting_) {
     is_attracting_ = true;
-    start_distance_ = std::abs(to_go);
-    start_angle_ = std::abs(to_turn);
+    // The pull is a spring of stiffness `strongest` / start that the step takes explicitly. One
+    // that carries the part beyond its place within a tick, with nothing but inertia against it,
+    // would throw it to and fro for good: a part that is so near is there.
+    const spatial::Twist step =
+        solver->CalcFreeMotion({guidance.attraction_torque * a, guidance.attraction_force * a});
+    const auto start_of = [](double rest, double overshoot) {
+      return std::abs(rest) > overshoot ? std::abs(rest) : 0.0;
+    };
+    start_distance_ = start_of(to_go, a.dot(step.v));
+    start_angle_ = start_of(to_turn, a.dot(step.w));
     const double scale = options_.workspace.mapping.scale;
     credit.force = 0.5 * guidance.attraction_force * start_distance_ / scale;
     credit.torque = 0.5 * guidance.attraction_torque * start_angle_;

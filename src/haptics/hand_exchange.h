@@ -11,6 +11,8 @@
 
 namespace hvas::haptics {
 
+class Coupling;
+
 /** How a held part moves, and answers to a further impulse. Zero for a part that goes its way
  whatever pushes it. */
 struct HeldResponse {
@@ -40,7 +42,10 @@ struct HandExchange {
   const RigidGroup* held_still{nullptr};  ///< Loose parts that its part is being put to.
   /** Wrench of its last step on the receiver's part, at the centre of mass. */
   spatial::Wrench F_pushed_W;
-  std::uint32_t pushed_hold{0};    ///< The receiver's hold that F_pushed_W is for.
+  std::uint32_t pushed_hold{0};  ///< The receiver's hold that F_pushed_W is for.
+  /** Coupling of its hand to what the receiver holds, where it holds that as well; else null. */
+  const Coupling* coupling{nullptr};
+  std::uint32_t coupled_hold{0};   ///< The receiver's hold that the coupling is for.
   bool has_solved_contact{false};  ///< Its last step has solved the contact of the two parts.
   MutualContact contact;           ///< That contact.
 

@@ -176,7 +176,7 @@ void HapticTick::HoldAlong(const DisplayedPart& displayed, TickOutput* out) noex
   out->F_felt_W = coupling_.CalcWrench(displayed);
   out->F_true_W = out->F_felt_W;
   FeelAtHand(*displayed.part, out);
-  F_help_W_ = {-out->F_felt_W.t, -out->F_felt_W.f};
+  pulls_along_ = true;
 }
 
 void HapticTick::FeelAtHand(const HeldPart& part, TickOutput* out) const noexcept {
@@ -191,10 +191,9 @@ HandExchange HapticTick::Exchange(std::size_t to) const noexcept {
   exchange.hold = hold_;
   exchange.response = response_;
   contacts_.FillExchange(to, &exchange);
-  if (is_helping() && to == helped_hand_) {
-    exchange.F_pushed_W.t += F_help_W_.t;
-    exchange.F_pushed_W.f += F_help_W_.f;
-    exchange.pushed_hold = helped_hold_;
+  if (pulls_along_ && is_helping() && to == helped_hand_) {
+    exchange.coupling = &coupling_;
+    exchange.coupled_hold = helped_hold_;
   }
   return exchange;
 }
@@ -234,13 +233,13 @@ TickOutput HapticTick::Tick(const device::DeviceState& state, const TickContext&
   helped_hold_ = helped != nullptr ? helped_hold_ : 0;
   contacts_.Begin(part, others);
   response_ = {};
-  F_help_W_ = {};
+  pulls_along_ = false;
   out.X_WH = hand_.X_WH;
   out.X_WT = hand_.X_WH;
   out.X_WD = hand_.X_WH;
   if (part != nullptr && is_usable) {
     out.X_WT = coupling_.Track(hand_, displayed_).X_WT;
-    Hold(!others.empty(), &out);
+    Hold(others, &out);
     FeelAtHand(*part, &out);
   } else {
     if (helped != nullptr && is_usable) {
@@ -299,10 +298,10 @@ double HapticTick::CalcStoredEnergy() const noexcept {
   return energy / options_.workspace.mapping.scale;
 }
 
-void HapticTick::Hold(bool has_others, TickOutput* out) noexcept {
+void HapticTick::Hold(std::span<const HandExchange> others, TickOutput* out) noexcept {
   soft_start_ = std::min(1.0, soft_start_ + options_.dt / kSoftStartTime);
   if (state_ != HoldState::kSeated) {
-    Step(has_others, out);
+    Step(others, out);
     return;
   }
   seating_.Advance(&displayed_);
@@ -315,7 +314,7 @@ void HapticTick::Hold(bool has_others, TickOutput* out) noexcept {
   contacts_.StepFreeBodies(&solver_);
 }
 
-void HapticTick::Step(bool has_others, TickOutput* out) noexcept {
+void HapticTick::Step(std::span<const HandExchange> others, TickOutput* out) noexcept {
   const HeldPart& part = *displayed_.part;
   guidance_.Update(displayed_, coupling_.tracked().X_WT);
   const double virtual_mass = CalcVirtualMass(part, options_);
@@ -324,6 +323,11 @@ void HapticTick::Step(bool has_others, TickOutput* out) noexcept {
   const spatial::Twist V_before = displayed_.V;
   solver_.Begin(virtual_mass, I_W, displayed_.p_WCm(), displayed_.V, options_.dt);
   coupling_.AddTo(displayed_, &solver_);
+  for (const HandExchange& other : others) {
+    if (other.coupling != nullptr && other.coupled_hold == hold_) {
+      other.coupling->AddTo(displayed_, &solver_);
+    }
+  }
   const Vec3 down_W = options_.gravity_W.normalized();
   const double weight_true = part.mass * options_.gravity_W.norm();
   weight_felt_ = soft_start_ * CalcFeltWeight(part);
@@ -339,7 +343,7 @@ void HapticTick::Step(bool has_others, TickOutput* out) noexcept {
       solver_.Solve(contacts_.effort().iterations, guidance_.mates().has_bores());
   contacts_.Finish(solver_);
   contacts_.MoveDisplayed(V, &displayed_);
-  if (has_others) {
+  if (!others.empty()) {
     RecordResponse(I_W, virtual_mass, V_before);
   }
   out->F_felt_W = coupling_.CalcWrench(displayed_);

@@ -141,9 +141,8 @@ class HapticTick {
   void HoldAlong(const DisplayedPart& displayed, TickOutput* out) noexcept;
   /** Moves the felt wrench to the hand's point: the coupling acts at the centre of mass. */
   void FeelAtHand(const HeldPart& part, TickOutput* out) const noexcept;
-  /** @param has_others  Whether the scene has other hands. */
-  void Hold(bool has_others, TickOutput* out) noexcept;
-  void Step(bool has_others, TickOutput* out) noexcept;
+  void Hold(std::span<const HandExchange> others, TickOutput* out) noexcept;
+  void Step(std::span<const HandExchange> others, TickOutput* out) noexcept;
   void RecordResponse(const Mat3& I_W, double mass, const spatial::Twist& V_before) noexcept;
   void UpdateState() noexcept;
 
@@ -169,7 +168,7 @@ class HapticTick {
   HeldResponse response_;
   std::size_t helped_hand_{0};    ///< Hand whose part this one holds as well.
   std::uint32_t helped_hold_{0};  ///< That hold of it; 0: none.
-  spatial::Wrench F_help_W_;      ///< Wrench of the last tick on that part, at its centre of mass.
+  bool pulls_along_{false};       ///< It pulled on that part in the last tick.
 };
 
 }  // namespace hvas::haptics

@@ -548,8 +548,7 @@ export async function takeOverByMouse(page, occurrence) {
 /** Moves the part under the mouse over its place and in, as far as it goes; the button stays down. */
 export async function bringInByMouse(page, occurrence, goal, height = 0.12) {
   await moveMouseTo(page, [goal[0], goal[1], goal[2] + height]);
-  // A round part may go on turning slowly about its axis.
-  await waitForStill(page, async () => ({ p: (await poseOf(page, occurrence)).p }));
+  await waitForRest(page, occurrence);
   const before = (await stateOf(page)).leaders[occurrence];
   await moveMouseTo(page, [goal[0], goal[1], goal[2] - 0.01]);
   // What is seated is let go after a while: it is in its place then, or one with the part on the table that has it.
