@@ -17,7 +17,7 @@ namespace hvas::assembly {
  has. It stays where it is: the executors hold on to its parts. */
 class RunSetup {
  public:
-  /** @param hands  One or two, as MakeHand gives them. */
+  /** @param hands  One to haptics::kMaxHands, as MakeHand gives them. */
   RunSetup(std::shared_ptr<const simulation::Model> model, std::vector<Hand> hands);
   RunSetup(const RunSetup&) = delete;
   RunSetup& operator=(const RunSetup&) = delete;
@@ -54,7 +54,7 @@ class RunSetup {
  */
 class AssemblySetup final : public RunSetup {
  public:
-  /** @param hands  One or two, as MakeHand gives them.
+  /** @param hands  One to haptics::kMaxHands, as MakeHand gives them.
    @param downstream  Receives what the loops produce after the run has processed it; may be null. A
    session::SessionRecorder among it is to begin with simulation() before the loops run. */
   AssemblySetup(std::shared_ptr<const simulation::Model> model, std::vector<Hand> hands,

@@ -77,7 +77,28 @@ Result<PartStatements> ReadPartStatements(const OpenOptions& options) {
   return statements;
 }
 
-/** @param inferred  What inference finds in the drawn poses. */
+/** Welds an imported product and infers its mates.
+ @param inferred  What inference finds in the drawn poses. */
+Result<void> Relate(const OpenOptions& options, WorkWatch* watch, Product* product,
+                    Diagnostics* diagnostics, Diagnostics* inferred) {
+  const auto stated = ReadPartStatements(options);
+  if (!stated) {
+    return Unexpected(stated.error());
+  }
+  if (auto welded = product::WeldUnits(stated->apart, product, diagnostics, watch); !welded) {
+    return welded;
+  }
+  if (auto set = mates::SetFlexibleParts(stated->flexible, options.rigid, product, diagnostics);
+      !set) {
+    return set;
+  }
+  if (auto set = mates::SetElasticParts(stated->elastic, product); !set) {
+    return set;
+  }
+  return mates::Infer(product, inferred, watch);
+}
+
+/** Imports a file, and relates its parts. */
 Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnostics* diagnostics,
                            Diagnostics* inferred) {
   if (const auto checked = Check(options); !checked) {
@@ -93,24 +114,8 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   if (!product) {
     return product;
   }
-  const auto stated = ReadPartStatements(options);
-  if (!stated) {
-    return Unexpected(stated.error());
-  }
-  if (const auto welded = product::WeldUnits(stated->apart, &*product, diagnostics, watch);
-      !welded) {
-    return Unexpected(welded.error());
-  }
-  if (const auto set =
-          mates::SetFlexibleParts(stated->flexible, options.rigid, &*product, diagnostics);
-      !set) {
-    return Unexpected(set.error());
-  }
-  if (const auto set = mates::SetElasticParts(stated->elastic, &*product); !set) {
-    return Unexpected(set.error());
-  }
-  if (const auto done = mates::Infer(&*product, inferred, watch); !done) {
-    return Unexpected(done.error());
+  if (const auto related = Relate(options, watch, &*product, diagnostics, inferred); !related) {
+    return Unexpected(related.error());
   }
   return product;
 }
@@ -211,6 +216,28 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
   return {};
 }
 
+/** What is stated of a product whose parts are related, and what stands around it. */
+Result<Product> Complete(const OpenOptions& options, Product product, const Diagnostics& inferred,
+                         WorkWatch* watch, Diagnostics* diagnostics) {
+  if (const auto applied = ApplyStated(options, &product, watch); !applied) {
+    return Unexpected(applied.error());
+  }
+  // What holds of the drawn poses does not where mates of the user have put the parts elsewhere.
+  const bool is_placed = !product.placement.drawn_poses.empty();
+  for (const Diagnostic& item : (is_placed ? product.placement.diagnostics : inferred).items()) {
+    diagnostics->Add(item);
+  }
+  for (const std::string& fit : options.fits) {
+    if (const auto assigned = mates::AssignFit(&product, fit); !assigned) {
+      return Unexpected(assigned.error());
+    }
+  }
+  if (const auto added = AddAccessories(options, &product, watch, diagnostics); !added) {
+    return Unexpected(added.error());
+  }
+  return product;
+}
+
 WorkWatch MakeWatch(const OpenOptions& options) {
   return WorkWatch(options.limits, options.stop);
 }
@@ -237,23 +264,20 @@ Result<Product> OpenProduct(const OpenOptions& options, Diagnostics* diagnostics
   if (!product) {
     return product;
   }
-  if (const auto applied = ApplyStated(options, &*product, &watch); !applied) {
-    return Unexpected(applied.error());
+  return Complete(options, *std::move(product), inferred, &watch, diagnostics);
+}
+
+Result<Product> OpenImported(Product imported, const OpenOptions& options,
+                             Diagnostics* diagnostics) {
+  if (const auto checked = Check(options); !checked) {
+    return Unexpected(checked.error());
   }
-  // What holds of the drawn poses does not where mates of the user have put the parts elsewhere.
-  const bool is_placed = !product->placement.drawn_poses.empty();
-  for (const Diagnostic& item : (is_placed ? product->placement.diagnostics : inferred).items()) {
-    diagnostics->Add(item);
+  WorkWatch watch = MakeWatch(options);
+  Diagnostics inferred;
+  if (const auto related = Relate(options, &watch, &imported, diagnostics, &inferred); !related) {
+    return Unexpected(related.error());
   }
-  for (const std::string& fit : options.fits) {
-    if (const auto assigned = mates::AssignFit(&*product, fit); !assigned) {
-      return Unexpected(assigned.error());
-    }
-  }
-  if (const auto added = AddAccessories(options, &*product, &watch, diagnostics); !added) {
-    return Unexpected(added.error());
-  }
-  return product;
+  return Complete(options, std::move(imported), inferred, &watch, diagnostics);
 }
 
 }  // namespace hvas::assembly

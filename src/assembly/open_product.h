@@ -71,4 +71,12 @@ struct OpenOptions {
 [[nodiscard]] Result<product::Product> OpenProduct(const OpenOptions& options,
                                                    Diagnostics* diagnostics);
 
+/** Does what OpenProduct does after the import, with a product that has been imported or was made
+ in memory. Only the side file of `options.file` is read. Errors: those of OpenProduct but
+ cad::Import's for the product. @pre diagnostics != nullptr. @param imported  Valid
+ (product::Validate). */
+[[nodiscard]] Result<product::Product> OpenImported(product::Product imported,
+                                                    const OpenOptions& options,
+                                                    Diagnostics* diagnostics);
+
 }  // namespace hvas::assembly

@@ -1,9 +1,13 @@
 #include "assembly/recorded_run.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "session/hand_names.h"
 #include "session/session_recorder.h"
 #include "simulation/flight_recorder.h"
 
@@ -15,9 +19,9 @@ using simulation::Model;
 Result<void> Check(const Model& model, const RunOptions& options) {
   constexpr double kSlowest = 1000;  // [Hz]: X4.
   constexpr double kFastest = 8000;  // [Hz]: a choice.
-  if (options.devices.empty() || options.devices.size() > 2) {
+  if (options.devices.empty() || options.devices.size() > haptics::kMaxHands) {
     return Fail(ErrorCode::kInvalid, fmt::format("there are no {} hands", options.devices.size()),
-                model.product->source, "ask for one hand or two");
+                model.product->source, fmt::format("ask for 1 to {} hands", haptics::kMaxHands));
   }
   const double rate_hz = options.render.rate_hz;
   if (!(rate_hz >= kSlowest && rate_hz <= kFastest)) {
@@ -40,8 +44,10 @@ Result<std::unique_ptr<record::Recorder>> MakeRunRecorder(const Model& model,
   record::Meta meta = further;
   meta["condition"] = kConditions[static_cast<std::size_t>(options.condition)];
   meta["force_map"] = haptics::ToString(options.force_map);
-  meta["device"] = options.devices.front();
-  meta["second_device"] = options.devices.size() == 1 ? std::string() : options.devices.back();
+  const std::size_t hands = options.devices.size();
+  for (std::size_t hand = 0; hand < std::max(session::kHandsOfMeta, hands); ++hand) {
+    meta[session::MakeDeviceKey(hand)] = hand < hands ? options.devices[hand] : std::string();
+  }
   if (options.person != simulation::PersonKind::kCareful) {
     meta["person"] = simulation::ToString(options.person);
   }

@@ -23,7 +23,7 @@ namespace hvas::assembly {
 
 /** Options of a run, and its callbacks. */
 struct RunOptions {
-  /** Addresses of the devices, one for each of one or two hands, in the form of
+  /** Addresses of the devices, one for each of one to haptics::kMaxHands hands, in the form of
    device::OpenAnyDevice; an empty address is a simulated person without a device. */
   std::vector<std::string> devices{std::string()};
   std::uint64_t seed{1};  ///< The simulated persons' seed.
@@ -78,9 +78,9 @@ struct RunOutcome {
  person, or the user of a device, takes each one, brings it to its place and inserts it. The run is
  recorded, and ticks around a fault are recorded with the second before it
  (simulation::FlightRecorder). Returns when every part had its turn, at the limit, or after a stop.
- Errors: kInvalid for other than one hand or two, a rate outside 1000 to 8000 Hz, or a device that
- does not exist; the drivers', where one is not there; those of record::Recorder::Create. A record
- that fails later is RunOutcome::record_error.
+ Errors: kInvalid for no hands or more than haptics::kMaxHands, a rate outside 1000 to 8000 Hz, or a
+ device that does not exist; the drivers', where one is not there; those of
+ record::Recorder::Create. A record that fails later is RunOutcome::record_error.
  @param model  As PrepareModel gives it. @pre model != nullptr. */
 [[nodiscard]] Result<RunOutcome> RunAssembly(const std::shared_ptr<const simulation::Model>& model,
                                              const RunOptions& options);

@@ -89,12 +89,6 @@ std::size_t HandOf(const TickRecord& tick) {
   return std::min<std::size_t>(tick.hand, haptics::kMaxHands - 1);
 }
 
-const char* OrdinalOfHand(std::size_t hand) {
-  constexpr std::array<const char*, haptics::kMaxHands> kOrdinals{
-      "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"};
-  return kOrdinals.at(hand);
-}
-
 std::span<const Column> TickColumns() {
   return kColumns;
 }

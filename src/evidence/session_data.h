@@ -28,9 +28,6 @@ struct Column {
 /** Which hand a tick is of, below haptics::kMaxHands also where the record is damaged. */
 [[nodiscard]] std::size_t HandOf(const record::TickRecord& tick);
 
-/** "first", "second" and so on, for people. */
-[[nodiscard]] const char* OrdinalOfHand(std::size_t hand);
-
 /** Which ticks are taken. */
 struct Selection {
   record::Reader::Span span;

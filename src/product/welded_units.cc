@@ -263,6 +263,9 @@ class UnitSearch {
   /** Whether the boxes of all touch, one by one; 2 % of the whole count as touching. */
   [[nodiscard]] bool AreConnected(const std::vector<OccurrenceId>& members) const {
     constexpr double kTouching = 0.02;  // Part of the whole: a choice.
+    if (members.empty()) {
+      return true;
+    }
     Box all;
     std::vector<Box> boxes;
     for (const OccurrenceId id : members) {
@@ -272,7 +275,7 @@ class UnitSearch {
     const double slack = kTouching * (all.is_empty() ? 0.0 : all.size().norm());
     std::vector<bool> is_reached(boxes.size(), false);
     std::vector<std::size_t> open{0};
-    std::size_t reached = boxes.empty() ? 0 : 1;
+    std::size_t reached = 1;
     is_reached[0] = true;
     while (!open.empty()) {
       const Box near = boxes[open.back()].Expanded(slack);

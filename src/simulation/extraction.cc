@@ -29,6 +29,9 @@ constexpr double kWayRelief = kDepthTolerance + 10e-6;  // [m]; a way is free wi
 constexpr double kShortestStep = 0.25e-3;               // [m] between looks along a way
 constexpr double kEndlessWay = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a thin wall.
+// Looks along one way, so that the time does not grow with the size of a product: 10 m at the
+// longest step, and 1.25 m at the shortest. A choice.
+constexpr double kMostLooks = 5000;
 
 }  // namespace
 
@@ -328,8 +331,9 @@ bool Extraction::RelieveWays(const std::vector<SequenceStep>& steps) {
 
 void Extraction::RelieveWay(const Unit& unit, const Vec3& direction, double length) {
   const std::vector<Member> members = ListMembers(unit, direction);
-  const double step = CalcStep(unit);
-  const int last = static_cast<int>(std::min(length, CalcExitDistance(unit, direction)) / step);
+  const double way = std::min(length, CalcExitDistance(unit, direction));
+  const double step = CalcStep(unit, way);
+  const int last = static_cast<int>(way / step);
   FaceReliefs::Depths deepest;
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
     for (const Member& member : members) {
@@ -405,21 +409,21 @@ spatial::Pose Extraction::CalcPoseAlong(OccurrenceId id, const Vec3& travel_W) c
   return {X_WB.q(), X_WB.p() + travel_W};
 }
 
-double Extraction::CalcStep(const Unit& unit) const {
+double Extraction::CalcStep(const Unit& unit, double length) const {
   double step = kLongestStep;
   for (const OccurrenceId id : unit) {
     const contact::Shape& shape = input_.scene->shape(contact::BodyId(id.index()));
     step = std::min(step, std::max(kShortestStep, 0.01 * shape.box_B().size().norm()));
   }
-  return step;
+  return std::max(step, length / kMostLooks);
 }
 
 std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& direction,
                                                 double from,
                                                 std::span<const contact::BodyId> excepted) {
   const std::vector<Member> members = ListMembers(unit, direction);
-  const double step = CalcStep(unit);
   const double exit = CalcExitDistance(unit, direction);
+  const double step = CalcStep(unit, exit);
   const int last = static_cast<int>(exit / step);
   for (int i = static_cast<int>(std::lround(from / step)); i <= last; ++i) {
     const double s = i * step;

@@ -283,8 +283,8 @@ class Extraction {
   [[nodiscard]] static contact::QueryOptions MakeQuery(const Member& member, double depth);
   /** Where a part is when it has moved from its drawn pose by `travel_W` [m]. */
   [[nodiscard]] spatial::Pose CalcPoseAlong(product::OccurrenceId id, const Vec3& travel_W) const;
-  /** Distance between looks along a way [m]. */
-  [[nodiscard]] double CalcStep(const Unit& unit) const;
+  /** Distance between looks along a way. @param length  Of the way [m]. */
+  [[nodiscard]] double CalcStep(const Unit& unit, double length) const;
   [[nodiscard]] std::vector<contact::Allowance> CollectAllowances(product::OccurrenceId id) const;
   /** Whether a part that gives gets past a face that it touches in its place, or off a shaft that
    it does not go all the way round. */

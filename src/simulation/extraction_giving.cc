@@ -107,9 +107,10 @@ void Extraction::VisitContacts(
     OccurrenceId id, const Vec3& direction,
     const std::function<void(const contact::Contact&, double travelled)>& visit) {
   const std::vector<Member> members = ListMembers({id}, direction);
-  const double step = CalcStep({id});
+  const double exit = CalcExitDistance({id}, direction);
+  const double step = CalcStep({id}, exit);
   VisitContacts(id, direction, MakeQuery(members[0], kDepthTolerance), step,
-                static_cast<int>(CalcExitDistance({id}, direction) / step), visit);
+                static_cast<int>(exit / step), visit);
 }
 
 void Extraction::VisitContacts(
@@ -197,12 +198,13 @@ GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, bool
   contact::QueryOptions query;
   query.margin = 0;
   query.self = contact::BodyId(id.index());
-  const double step = CalcStep({id});
+  const double exit = CalcExitDistance({id}, direction);
+  const double step = CalcStep({id}, exit);
   double until = 0;
   GivingSamples samples;
   contact::Contact& deepest = samples.deepest;
   VisitContacts(
-      id, direction, query, step, static_cast<int>(CalcExitDistance({id}, direction) / step),
+      id, direction, query, step, static_cast<int>(exit / step),
       [&](const contact::Contact& contact, double travelled) {
         if (counts(contact)) {
           until = travelled;
@@ -279,8 +281,9 @@ std::optional<Obstacle> Extraction::FindSqueezed(OccurrenceId id, const Vec3& di
   query.margin = section;  // What it is stretched over pushes it against what is around it.
   query.allowances = {};
   query.ignored = {};
-  const double step = CalcStep({id});
-  const int last = static_cast<int>(CalcExitDistance({id}, direction) / step);
+  const double exit = CalcExitDistance({id}, direction);
+  const double step = CalcStep({id}, exit);
+  const int last = static_cast<int>(exit / step);
 
   // At each look along the way, how deep it is in what is inside of it, and in what is around it.
   // Past the middle of its section the nearest way out leads on: what is deepest tells the side.

@@ -89,7 +89,8 @@ sweep::Path Extraction::FindFreeWay(OccurrenceId id, const InnerMotion& motion) 
   const std::vector<Member> members = ListMembers({id}, motion.direction);
   const contact::QueryOptions query = MakeQuery(members.front(), kDepthTolerance);
   const contact::Shape& shape = input_.scene->shape(query.self);
-  sweep::Path way = sweep::Resample(motion.way, shape.box_B(), CalcStep({id}));
+  const double length = (motion.way.back().p() - motion.way.front().p()).norm();
+  sweep::Path way = sweep::Resample(motion.way, shape.box_B(), CalcStep({id}, length));
   const auto met = std::find_if(way.begin(), way.end(), [&](const spatial::Pose& X_WB) {
     ++straight_looks_;
     return !input_.scene->IsFree(shape, X_WB, kDepthTolerance, query, &workspace_);

@@ -166,7 +166,7 @@ class PartRun : public Sink {
   /** The task of a person who puts in or takes out what moves in a step. */
   [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);
 
-  std::array<haptics::HoldState, 2> states_{};           ///< One for each hand.
+  std::array<haptics::HoldState, haptics::kMaxHands> states_{};  ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   std::vector<bool> has_touched_;  ///< PartResult::has_touched, by OccurrenceId.
   std::vector<PartResult> results_;

@@ -118,9 +118,9 @@ class DeviceHolder {
 
 /** Seed of the person who has this hand, in a session with this seed. */
 [[nodiscard]] constexpr std::uint64_t SeedOfHand(std::uint64_t seed, std::size_t hand) {
-  // 2^64 over the golden ratio: any number that makes the second hand's stream another one.
-  constexpr std::uint64_t kOther = 0x9e3779b97f4a7c15;
-  return hand == 0 ? seed : seed ^ kOther;
+  // 2^64 over the golden ratio: an odd number, whose multiples all differ.
+  constexpr std::uint64_t kApart = 0x9e3779b97f4a7c15;
+  return seed ^ (hand * kApart);
 }
 
 /** A simulated person: an arm impedance that follows minimum-jerk reaches (Flash and Hogan, J.

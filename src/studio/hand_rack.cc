@@ -8,8 +8,12 @@
 #include <fmt/ranges.h>
 
 #include "base/check.h"
+#include "studio/protocol.h"
 
 namespace hvas::studio {
+
+static_assert(HandRack::kMaxHands == protocol::kMaxHands, "the page has room for as many");
+
 namespace {
 
 /** Describes the pointer in the form of a device. */

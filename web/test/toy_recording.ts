@@ -87,6 +87,12 @@ export function toyFrames(moments: number, more: (moment: number) => Partial<Han
   return joinBytes(pieces);
 }
 
+/** One moment of several hands. */
+export function handsFrame(hands: readonly number[]): ArrayBuffer {
+  const states = hands.map((hand) => ({ ...kHand, hand }));
+  return joinBytes([pack(FrameKind.Hands, BigInt(kPeriodNs), states, HandStateSize, writeHandState)]);
+}
+
 export function toyDetail(events: RecordedEvent[], durationS: number): RecordingDetail {
   return {
     id: "r1",

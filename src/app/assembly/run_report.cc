@@ -8,8 +8,8 @@
 #include "app/output/text_layout.h"
 #include "app/product/product_json.h"
 #include "base/units.h"
-#include "evidence/session_data.h"
 #include "haptics/free_bodies.h"
+#include "session/hand_names.h"
 #include "simulation/shapes.h"
 
 namespace hvas::app {
@@ -102,7 +102,7 @@ void PrintDevices(const RunOutcome& outcome) {
 }  // namespace
 
 std::string NameOfHand(std::size_t hand) {
-  return fmt::format("{} hand", evidence::OrdinalOfHand(hand));
+  return fmt::format("{} hand", session::OrdinalOfHand(hand));
 }
 
 const std::string& PathOf(const Model& model, product::OccurrenceId id) {
@@ -147,9 +147,8 @@ nlohmann::ordered_json MakeRunJson(const Model& model, const SessionReport& repo
   json["digest"] = outcome.digest;
   json["force_map"] = haptics::ToString(report.force_map);
   json["hands"] = outcome.hands;
-  constexpr const char* kKeys[] = {"device", "second_device"};
   for (const DeviceInHand& device : outcome.devices) {
-    json[kKeys[device.hand]] = ToJson(device);
+    json[session::MakeDeviceKey(device.hand)] = ToJson(device);
   }
   json["preparation_s"] = ToS(report.preparation_ns);
   json["contact_shapes_bytes"] = simulation::CalcShapeMemory(model).total();

@@ -17,6 +17,7 @@
 #include "pages/html_page.h"
 #include "pages/svg_plot.h"
 #include "record/session_file.h"
+#include "session/hand_names.h"
 #include "session/json_values.h"
 
 namespace hvas::app {
@@ -45,7 +46,7 @@ constexpr const char* kStyle = R"(
 @media(prefers-color-scheme:dark){.w0{stroke:#6cb0ff}.w1{stroke:#ff9c66}.w2{stroke:#6fd08c}.w3{stroke:#b9a3ff}.w4{stroke:#aeb6bf}}
 )";
 
-std::string MetaOf(const Summary& summary, const char* key) {
+std::string MetaOf(const Summary& summary, const std::string& key) {
   const auto found = summary.meta.find(key);
   return found == summary.meta.end() ? std::string() : found->second;
 }
@@ -200,7 +201,7 @@ std::string MakeSequence(const Summary& summary) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.3f}</td><td>{:.4g}</td>"
         "<td>{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{:.2f}</td><td class=\"{}\">{}</td></tr>",
-        Escape(NameOf(summary, hold.occurrence)), evidence::OrdinalOfHand(hold.hand),
+        Escape(NameOf(summary, hold.occurrence)), session::OrdinalOfHand(hold.hand),
         1e-9 * static_cast<double>(hold.start_ns),
         1e-9 * static_cast<double>(hold.end_ns - hold.start_ns), hold.path, hold.peak_true,
         hold.peak_felt, ToMm(hold.insertion), hold.collisions,
@@ -227,7 +228,7 @@ std::string MakeForces(const Summary& summary) {
     }
     PlotFigure figure;
     if (summary.hands.size() > 1) {
-      figure.title = fmt::format("{} hand", evidence::OrdinalOfHand(hand));
+      figure.title = fmt::format("{} hand", session::OrdinalOfHand(hand));
       figure.title.front() = static_cast<char>(std::toupper(figure.title.front()));
     }
     const std::string x = "session time [s]";
@@ -373,18 +374,19 @@ std::string MakeIncidents(const Summary& summary) {
 }
 
 std::string MakeSource(const Summary& summary) {
-  const auto device = [&](const char* key) {
-    const std::string address = MetaOf(summary, key);
-    return address.empty() ? std::string("simulated, or a pointer") : Escape(address);
-  };
+  std::string devices;
+  for (std::size_t hand = 0; hand < std::max<std::size_t>(1, summary.hands.size()); ++hand) {
+    const std::string address = MetaOf(summary, session::MakeDeviceKey(hand));
+    devices += fmt::format("{} in the {}{}: {}", hand == 0 ? "device" : ",",
+                           session::OrdinalOfHand(hand), hand == 0 ? " hand" : "",
+                           address.empty() ? "simulated, or a pointer" : Escape(address));
+  }
   return fmt::format(
-      "<h2>About this session</h2><p>Condition {}; force map {}; seed {}; device in the first "
-      "hand: "
-      "{}{}.</p><p class=\"soft\"><small>Digest {}. Whether the record runs again bit for bit is "
+      "<h2>About this session</h2><p>Condition {}; force map {}; seed {}; {}.</p><p "
+      "class=\"soft\"><small>Digest {}. Whether the record runs again bit for bit is "
       "told by hvas replay --verify.</small></p>",
       Escape(MetaOf(summary, "condition")), Escape(MetaOf(summary, "force_map")),
-      Escape(MetaOf(summary, "seed")), device("device"),
-      summary.hands.size() < 2 ? "" : ", in the second: " + device("second_device"),
+      Escape(MetaOf(summary, "seed")), devices,
       summary.is_complete ? Escape(MetaOf(summary, record::kMetaDigest))
                           : "missing, because the record is incomplete");
 }

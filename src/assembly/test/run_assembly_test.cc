@@ -1,6 +1,9 @@
 #include "assembly/run_assembly.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +58,33 @@ TEST(RunAssemblyTest, TellsOfEachPartAndEachDevice) {
   ASSERT_FALSE(parts.empty());
 }
 
+TEST(RunAssemblyTest, FiveHandsTakeTurnsAndEachHasASeedAndADeviceOfItsOwn) {
+  const hvas::testing::TemporaryFolder folder;
+  RunOptions options;
+  options.devices = {"", "emulated:haply", "", "", "emulated:haply"};
+  options.record = folder / "session.hvasrec";
+  std::set<std::size_t> hands;
+  options.on_part = [&hands](const auto&, const simulation::PartResult& part) {
+    hands.insert(part.hand);
+  };
+  const auto outcome =
+      RunAssembly(simulation::testing::CompileFast(simulation::testing::BlocksOnPlate(5)), options);
+  ASSERT_TRUE(outcome.has_value()) << outcome.error().ToString();
+  EXPECT_TRUE(outcome->is_complete());
+  EXPECT_EQ(outcome->hands, 5u);
+  EXPECT_EQ(hands, (std::set<std::size_t>{0, 1, 2, 3, 4}));
+  auto reader = record::Reader::Open(options.record);
+  ASSERT_TRUE(reader.has_value());
+  EXPECT_EQ(reader->meta().at("second_device"), "emulated:haply");
+  EXPECT_EQ(reader->meta().at("third_device"), "");
+  EXPECT_EQ(reader->meta().at("fifth_device"), "emulated:haply");
+  std::set<std::uint64_t> seeds;
+  for (std::size_t hand = 0; hand < haptics::kMaxHands; ++hand) {
+    seeds.insert(simulation::SeedOfHand(options.seed, hand));
+  }
+  EXPECT_EQ(seeds.size(), haptics::kMaxHands);
+}
+
 TEST(RunAssemblyTest, RefusesADeviceThatIsMissing) {
   RunOptions options;
   options.devices = {"no_such_driver"};
@@ -71,7 +101,7 @@ TEST(RunAssemblyTest, RefusesOptionsOutOfRange) {
   RunOptions options;
   options.devices = {};
   EXPECT_EQ(RunAssembly(PegInBlockModel(), options).error().code, ErrorCode::kInvalid);
-  options.devices = {"", "", ""};
+  options.devices.assign(haptics::kMaxHands + 1, "");
   EXPECT_EQ(RunAssembly(PegInBlockModel(), options).error().code, ErrorCode::kInvalid);
   options = {};
   options.render.rate_hz = 0;

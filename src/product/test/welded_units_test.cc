@@ -462,6 +462,16 @@ TEST(WeldedUnits, ComponentsOfABoardAreOneBodyEachAndPartsOfACaseAreNot) {
   }
 }
 
+TEST(WeldedUnits, AComponentOfABoardThatHasNoBodiesIsNoBody) {
+  Builder b;
+  b.Place(b.AddPart("PCB", MakeBox({60e-3, 60e-3, 1.6e-3})), Pose());
+  for (int i = 0; i < 3; ++i) {
+    b.AddNode("R" + std::to_string(i + 1));
+  }
+  Weld(&b.product());
+  EXPECT_EQ(b.product().occurrences.size(), 1u);
+}
+
 TEST(WeldedUnits, WhatIsNamedStaysApartByUnitMemberOrAll) {
   for (const char* name : {"all", "Servo 9g", "rig/Servo 9g", "lid", "Servo 9g/lid"}) {
     Builder b = MakeUnit("Servo 9g");

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/extraction.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::simulation {
@@ -411,6 +412,23 @@ TEST(ReorderTest, UnknownOrUsedUpNameIsAnErrorThatNamesIt) {
     EXPECT_PRED_FORMAT2(IsSubstring, "'" + names.back() + "'", reordered.error().message);
     EXPECT_PRED_FORMAT2(IsSubstring, "hvas inspect", reordered.error().remedy);
   }
+}
+
+TEST(SequenceTest, AWayThatEndsBehindAPartFarAwayTakesNoMoreThanFiveThousandLooks) {
+  Product product;
+  product.name = "far";
+  const auto block = testing::AddPart(&product, "block", contact::testing::Block({0.1, 0.1, 0.1}));
+  testing::Place(&product, block, "here");
+  testing::Place(&product, block, "there", Pose(Vec3(1e7, 0, 0)));
+  testing::Complete(&product);
+  const auto model = testing::CompileFast(std::move(product));
+  contact::Scene scene;
+  const SequenceInput input = MakeSequenceInput(*model, &scene);
+  Extraction extraction(input, &model->sequence);
+  EXPECT_GT(extraction.CalcWayLength({OccurrenceId(0)}, Vec3::UnitX()), 0.99e7);
+  (void)extraction.TryRemoveAlong({OccurrenceId(0)}, Vec3::UnitX());
+  EXPECT_GT(extraction.looks(), 100u);
+  EXPECT_LE(extraction.looks(), 5001u);
 }
 
 }  // namespace

@@ -256,6 +256,25 @@ Product CapOnBead(double outer_radius) {
   return product;
 }
 
+Product BlocksOnPlate(int count) {
+  const Vec3 half(10e-3, 15e-3, 8e-3);
+  constexpr double kPitch = 30e-3;
+  constexpr double kHalfPlate = 5e-3;  // Of its thickness.
+  Product product;
+  product.name = "row";
+  const PartId plate = AddPart(
+      &product, "plate", contact::testing::Block(Vec3(0.5 * kPitch * count, 20e-3, kHalfPlate)));
+  const PartId block = AddPart(&product, "block", contact::testing::Block(half));
+  Place(&product, plate, "plate");
+  for (int i = 0; i < count; ++i) {
+    const double x = kPitch * (i - 0.5 * (count - 1));
+    Place(&product, block, "block " + std::to_string(i + 1),
+          Pose(Vec3(x, 0, kHalfPlate + half.z())));
+  }
+  Complete(&product);
+  return product;
+}
+
 Product StateRigid(Product product) {
   for (const product::Occurrence& occurrence : product.occurrences) {
     product.flexible.push_back({occurrence.id, product::FlexibleKind::kStated, 0, "a test"});

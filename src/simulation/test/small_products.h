@@ -70,6 +70,9 @@ Product PegInCarrierInCup();
  @param outer_radius  The cap's: its wall is as thick as from 10.4 mm to it. */
 Product CapOnBead(double outer_radius);
 
+/** Blocks of equal size that stand side by side on a plate, 10 mm apart. */
+Product BlocksOnPlate(int count);
+
 /** States all parts of a product to be rigid. */
 Product StateRigid(Product product);
 

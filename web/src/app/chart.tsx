@@ -8,7 +8,7 @@ import { liveTraces, studio, ui, view, viewport } from "./app_state";
 import { figures, language, t } from "./i18n";
 import { setText } from "./live";
 import { followSize, makeTimePlot, type Curve, type PlotTime } from "./plot_canvas";
-import { plotClock, shownSpan, traceOf } from "./time_source";
+import { plotClock, plottedHand, shownSpan, traceOf } from "./time_source";
 
 const kRedrawMs = 45;
 
@@ -29,7 +29,7 @@ interface ChartProps {
 
 /** The newest of what the trace has, and of a recording what it had then. */
 function readNow(curve: Quantity): number | null {
-  const trace = traceOf(ui.plotHand.peek());
+  const trace = traceOf(plottedHand());
   const clock = plotClock();
   const index = trace.indexAt(clock.nowS + 1e-9) - 1;
   return index < 0 ? null : curve.factor * trace.valueAt(index, curve.field);
@@ -37,7 +37,7 @@ function readNow(curve: Quantity): number | null {
 
 function readCurves(curves: readonly Quantity[], time: PlotTime): number[][] {
   const fields = curves.map((curve) => curve.field);
-  const series = readSeries(traceOf(ui.plotHand.peek()), fields, time.fromS, time.toS);
+  const series = readSeries(traceOf(plottedHand()), fields, time.fromS, time.toS);
   return [
     series.timesS.map((timeS) => timeS - time.originS),
     ...series.columns.map((column, k) => column.map((value) => value * (curves[k]?.factor ?? 1))),
@@ -56,7 +56,7 @@ function startDrawing(plot: uPlot, time: PlotTime, curves: readonly Quantity[], 
     liveTraces.follow(studio.liveFrames);
     const clock = plotClock();
     const span = shownSpan();
-    const key = [ui.plotHand.peek(), clock.isReplay, clock.nowS, span.fromS, span.toS].join("/");
+    const key = [plottedHand(), clock.isReplay, clock.nowS, span.fromS, span.toS].join("/");
     if (key === drawn) {
       return;
     }

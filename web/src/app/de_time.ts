@@ -18,7 +18,7 @@ export const deTime: Record<keyof typeof enTime, string> = {
   "action.markOn": "Zum nächsten Ereignis",
   "action.live": "Zurück zu live",
   "action.plotCsv": "Gezeigte Kurven sichern (CSV)",
-  "action.switchHand": "Maus an die andere Hand",
+  "action.switchHand": "Maus an die nächste Hand",
   "action.devices": "Hände und Geräte…",
   "log.recordingOn": "Aufnahme läuft: {name}",
   "log.recordingOff": "Aufgenommen: {name}",

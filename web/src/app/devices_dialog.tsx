@@ -1,7 +1,7 @@
 /** The hands, what each of them is, and the devices that could be. */
 
 import { useEffect } from "preact/hooks";
-import { kMaxHands } from "../protocol/frame_store";
+import { kMaxHands } from "../protocol/frames";
 import type { FoundDevice } from "../protocol/messages";
 import { findAction, runAction } from "./actions";
 import { canSteer, store, studio, ui } from "./app_state";

@@ -16,7 +16,7 @@ export const enTime = {
   "action.markOn": "To the next event",
   "action.live": "Back to live",
   "action.plotCsv": "Save the plotted data (CSV)",
-  "action.switchHand": "Move the other hand with the mouse",
+  "action.switchHand": "Move the next hand with the mouse",
   "action.devices": "Hands and devices…",
   "log.recordingOn": "Recording: {name}",
   "log.recordingOff": "Recorded: {name}",

@@ -2,9 +2,9 @@
 
 import { kTraceFields, readSeries } from "../model/trace";
 import { encodeMoment, encodeView } from "../model/view_link";
-import { store, studio, ui, viewport } from "./app_state";
+import { store, studio, viewport } from "./app_state";
 import { t } from "./i18n";
-import { shownSpan, traceOf } from "./time_source";
+import { plottedHand, shownSpan, traceOf } from "./time_source";
 
 export const acceptedFiles = ".step,.stp,.iges,.igs,.glb,.gltf,.obj,.stl,.3mf";
 
@@ -72,7 +72,7 @@ export function saveRuns(): void {
 /** What the plots show, every sample of it. */
 export function savePlot(): void {
   const { fromS, toS } = shownSpan();
-  const { timesS, columns } = readSeries(traceOf(ui.plotHand.value), kTraceFields, fromS, toS, Infinity);
+  const { timesS, columns } = readSeries(traceOf(plottedHand()), kTraceFields, fromS, toS, Infinity);
   const rows = timesS.map((timeS, k) => [Number((timeS - fromS).toFixed(6)), ...columns.map((column) => column[k] ?? 0)]);
   saveTable([["time_s", ...kTraceFields], ...rows], "plot");
 }

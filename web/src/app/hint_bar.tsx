@@ -30,7 +30,7 @@ export function HintBar() {
   if (scene === null) {
     return null;
   }
-  const hasTwo = store.hands.value.length > 1;
+  const hasSeveral = store.hands.value.length > 1;
   const held = store.held.value.find((h) => h.hand === view.hand.value) ?? store.held.value[0] ?? null;
   const expected = store.expected.value?.occurrence ?? null;
   const hint = makeHint({ scene, held, expected, isDone: store.isDone.value, canSteer: leadsHand() });
@@ -41,7 +41,7 @@ export function HintBar() {
     <div class={`hint-bar is-${hint.state}`} ref={bar} data-testid="hint" data-state={hint.state}>
       <i class="state-dot" aria-hidden="true" />
       <div class="hint-text">
-        {hasTwo ? <span class="badge">{t("hands.name", { n: (held?.hand ?? view.hand.value) + 1 })}</span> : null}
+        {hasSeveral ? <span class="badge">{t("hands.name", { n: (held?.hand ?? view.hand.value) + 1 })}</span> : null}
         <strong>{hint.params.part || t(`state.${hint.state}`)}</strong>
         {hint.params.part ? <span class="hint-state">{t(`state.${hint.state}`)}</span> : null}
         {isGuiding() && !isOthers && hint.key !== "hint.done" ? null : (

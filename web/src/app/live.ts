@@ -24,7 +24,7 @@ export function useLive(write: (live: LiveState | null) => void, everyMs = kRead
   }, [port, everyMs]);
 }
 
-/** The hand that holds something, or none; of two the one that has `wanted`, or that the mouse leads. */
+/** The hand that holds something, or none; of several the one that has `wanted`, or that the mouse leads. */
 export function holdingHand(live: LiveState | null, wanted: number | null = null): HandState | null {
   const holding = live?.hands.filter((h) => h.state > 0) ?? [];
   const ofWanted = wanted === null ? undefined : holding.find((h) => h.occurrence === wanted);

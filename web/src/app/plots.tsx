@@ -2,7 +2,7 @@
 
 import { kWindowsS } from "../model/plot_range";
 import type { TraceField } from "../model/trace";
-import { store, ui, type BottomTab } from "./app_state";
+import { ui, type BottomTab } from "./app_state";
 import { Chart, type Quantity } from "./chart";
 import { EventList } from "./event_list";
 import { savePlot } from "./exports";
@@ -11,6 +11,7 @@ import { Icon } from "./icons";
 import { Lazy } from "./lazy";
 import { Rates } from "./rates";
 import { RunsTable } from "./run_card";
+import { plotHands, plottedHand } from "./time_source";
 
 const kColors = ["--s-red", "--s-orange", "--s-blue"] as const;
 
@@ -50,15 +51,17 @@ function windowName(seconds: number): string {
 
 function PlotTools() {
   const isHeld = ui.plotSpan.value !== null;
+  const hands = plotHands();
   return (
     <span class="plot-tools">
-      {store.hands.value.length > 1 ? (
+      {hands.length > 1 ? (
         <select
           aria-label={t("plot.hand")}
-          value={ui.plotHand.value}
+          data-testid="plot-hand"
+          value={plottedHand()}
           onChange={(event) => (ui.plotHand.value = Number(event.currentTarget.value))}
         >
-          {[0, 1].map((hand) => (
+          {hands.map((hand) => (
             <option key={hand} value={hand}>
               {t("hands.name", { n: hand + 1 })}
             </option>

@@ -1,5 +1,6 @@
 /** What can be done with time: record, play, go to a moment; and with hands and their devices. */
 
+import { handAfter } from "../model/hands";
 import { action, type Action } from "./action";
 import { canSteer, store, studio, ui, view } from "./app_state";
 import { savePlot } from "./exports";
@@ -31,7 +32,7 @@ function goToMark(direction: 1 | -1): void {
 }
 
 function switchHand(): void {
-  view.hand.value = 1 - view.hand.value;
+  view.hand.value = handAfter(store.ownHands.value, view.hand.value);
   studio.notify(t("notice.hand", { n: view.hand.value + 1 }));
 }
 
@@ -40,7 +41,7 @@ export const fileTimeActions: Action[] = [action("plot-csv", "action.plotCsv", s
 export const simulateTimeActions: Action[] = [
   action("switch-hand", "action.switchHand", switchHand, {
     keys: ["w"],
-    isEnabled: () => canSteer() && store.hands.value.length > 1,
+    isEnabled: () => canSteer() && store.ownHands.value.length > 1,
   }),
   action("devices", "action.devices", () => (ui.overlay.value = { kind: "devices" }), {
     isEnabled: () => store.link.value === "open",

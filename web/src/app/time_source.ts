@@ -1,10 +1,8 @@
 /** Where the plots and the timeline have their time and their samples from: live, or of a recording. */
 
-import { heldAt, rangeOf, type PlotClock, type Span } from "../model/plot_range";
+import { heldAt, liveClock, plottableHands, rangeOf, type PlotClock, type Span } from "../model/plot_range";
 import type { Trace } from "../model/trace";
-import { liveTraces, studio, ui, viewport } from "./app_state";
-
-const kNothing: PlotClock = { nowS: 0, beginS: 0, endS: 0, isReplay: false };
+import { liveTraces, store, studio, ui, viewport } from "./app_state";
 
 export function traceOf(hand: number): Trace {
   const playback = studio.recordings.playback.peek();
@@ -16,12 +14,18 @@ export function plotClock(): PlotClock {
   if (playback !== null) {
     return { nowS: playback.timeS, beginS: 0, endS: playback.durationS, isReplay: true };
   }
-  const traces = [0, 1].map((hand) => liveTraces.of(hand)).filter((trace) => trace.count > 0);
-  if (traces.length === 0) {
-    return kNothing;
-  }
-  const endS = Math.max(...traces.map((trace) => trace.lastS));
-  return { nowS: endS, beginS: Math.min(...traces.map((trace) => trace.firstS)), endS, isReplay: false };
+  return liveClock(liveTraces.list());
+}
+
+/** The hands that the plots can show: those that are there, or those of the recording. */
+export function plotHands(): number[] {
+  return plottableHands(store.hands.value, studio.recordings.playback.value?.run.traces ?? null);
+}
+
+/** The hand whose forces are plotted: the chosen one while it is there. */
+export function plottedHand(): number {
+  const hands = plotHands();
+  return hands.includes(ui.plotHand.value) ? ui.plotHand.value : (hands[0] ?? 0);
 }
 
 /** What the plots show now. */

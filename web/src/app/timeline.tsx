@@ -93,10 +93,7 @@ function useMarks(playback: Playback | null): readonly Mark[] {
     return playback.marks;
   }
   void beat.value;
-  return liveMarks(
-    store.log.value,
-    [0, 1].map((hand) => liveTraces.of(hand)),
-  );
+  return liveMarks(store.log.value, liveTraces.list());
 }
 
 /** The time of the thumb: of a playback its moment, of live plots the end of what they show. */

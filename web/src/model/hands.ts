@@ -17,6 +17,16 @@ export function isPointerHand(hands: readonly HandSetup[], own: readonly number[
   return followsPointer(hands, hand) && own.includes(hand);
 }
 
+/** The hand after this one, of those that a page leads; after the last one the first. */
+export function handAfter(own: readonly number[], hand: number): number {
+  return own[(own.indexOf(hand) + 1) % own.length] ?? hand;
+}
+
+/** The hand that one of a user's two leads, of those that the page leads: the right one leads the first; null where it leads none. */
+export function handOfUser(own: readonly number[], isLeft: boolean): number | null {
+  return own[Math.min(isLeft ? 1 : 0, own.length - 1)] ?? null;
+}
+
 /** The client that leads a hand. */
 export function leaderOf(clients: readonly Client[], hand: number): Client | null {
   return clients.find((client) => (client.hands ?? (client.has_lease ? [0] : [])).includes(hand)) ?? null;

@@ -1,7 +1,7 @@
 /** Who is in the studio, where the others look, and the notes that are pinned to parts. */
 
 import type { Client, HandSetup, ServerEvent } from "../protocol/messages";
-import { kMaxHands } from "../protocol/frame_store";
+import { kMaxHands } from "../protocol/frames";
 import { dropAnswered, noteAsking } from "./asking";
 import type { Store } from "./store";
 

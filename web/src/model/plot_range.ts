@@ -1,5 +1,8 @@
 /** Which stretch of time the plots show. */
 
+import type { HandSetup } from "../protocol/messages";
+import type { Trace } from "./trace";
+
 /** From and to, on the clock of what is shown [s]. */
 export interface Span {
   fromS: number;
@@ -19,6 +22,20 @@ export interface PlotClock {
   beginS: number;
   endS: number;
   isReplay: boolean;
+}
+
+/** The clock of what has been traced live: as far as any hand goes back. */
+export function liveClock(traces: readonly Pick<Trace, "firstS" | "lastS">[]): PlotClock {
+  if (traces.length === 0) {
+    return { nowS: 0, beginS: 0, endS: 0, isReplay: false };
+  }
+  const endS = Math.max(...traces.map((trace) => trace.lastS));
+  return { nowS: endS, beginS: Math.min(...traces.map((trace) => trace.firstS)), endS, isReplay: false };
+}
+
+/** The hands whose plots can be chosen: those of the scene, or those that a recording has samples of. */
+export function plottableHands(hands: readonly Pick<HandSetup, "hand">[], recorded: readonly Pick<Trace, "count">[] | null): number[] {
+  return recorded === null ? hands.map(({ hand }) => hand) : recorded.flatMap((trace, hand) => (trace.count > 0 ? [hand] : []));
 }
 
 /** @param seconds  The length of a window that goes along with now, or with the moment that is played.

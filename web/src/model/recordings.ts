@@ -2,7 +2,8 @@
 
 import { batch, signal } from "@preact/signals";
 import { CommandError } from "../protocol/connection";
-import { kMaxHands, sampleOf } from "../protocol/frame_store";
+import { sampleOf } from "../protocol/frame_store";
+import { kMaxHands } from "../protocol/frames";
 import type { RecordingDetail, RecordingEntry, RecordingNow, Scene, ServerError } from "../protocol/messages";
 import { RecordedFrames } from "../protocol/recorded_frames";
 import type { Announcer, Commander } from "./commander";

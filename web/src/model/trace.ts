@@ -124,6 +124,11 @@ export class LiveTraces {
     return trace;
   }
 
+  /** Of all hands that have been seen, whatever their number. */
+  list(): Trace[] {
+    return [...this.hands.values()].filter((trace) => trace.count > 0);
+  }
+
   /** @return Whether there was anything new. */
   follow(store: FrameStore): boolean {
     const total = store.sampleCount;

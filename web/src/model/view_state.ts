@@ -22,7 +22,7 @@ export function makeViewState() {
   const isRich = computed(() => quality.value === "high" || (quality.value === "auto" && isFast.value && !isSlow.value));
   return {
     tool: signal<Tool>("hand"),
-    /** The hand that the mouse leads where there are two. */
+    /** The hand that the mouse leads where there are several. */
     hand: signal(0),
     selectMode: signal<SelectMode>("part"),
     selected: signal<readonly number[]>([]),

@@ -13,6 +13,7 @@ import {
   DeformationSize,
   FrameKind,
   HandStateSize,
+  kMaxHands,
   readContactPoint,
   readHandState,
   type ContactPoint,
@@ -20,7 +21,6 @@ import {
 } from "./frames";
 
 export const kMaxOccurrences = 16384;
-export const kMaxHands = 8;
 export const kMaxContacts = 128;
 export const kMaxDeformations = 4096;
 export const kSampleSlots = 2048;

@@ -1,6 +1,7 @@
 /** Takes parts with the hands of somebody in VR, leads them, and lets the controllers tell what they feel. */
 
 import { Vector3, type Group } from "three";
+import { handOfUser } from "../../model/hands";
 import { compose, inverse, toQuat, toVec3, type Pose } from "../../model/math";
 import type { HeldSummary } from "../../model/store";
 import type { Studio } from "../../model/studio";
@@ -160,13 +161,12 @@ export class VrHands {
     return live === undefined ? null : { hand, occurrence, X_WH: { p: toVec3(live.p_WH_m), q: toQuat(live.q_WH) } };
   }
 
-  /** The server's hand for one of the user's: with two, the right one is the first. */
+  /** The server's hand for one of the user's. */
   private freeHand(hand: UserHand): number | null {
-    const count = Math.max(1, this.studio.store.hands.peek().length);
     const busy = new Set(this.studio.store.held.peek().map((h) => h.hand));
-    const own = hand.handedness === "left" ? 1 : hand.handedness === "right" ? 0 : hand.index;
-    const wished = Math.min(own, count - 1);
-    return busy.has(wished) ? null : wished;
+    const isLeft = hand.handedness === "left" || (hand.handedness !== "right" && hand.index === 1);
+    const wished = handOfUser(this.studio.store.ownHands.peek(), isLeft);
+    return wished === null || busy.has(wished) ? null : wished;
   }
 
   private lead(hand: UserHand, hold: Hold): HandInput | null {
