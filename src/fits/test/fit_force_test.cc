@@ -208,8 +208,8 @@ TEST(FitForce, IsThePressFitOfItsDepth) {
   }
 }
 
-// N5: where the surfaces are rough, smoothing takes its share of the pressure and of the force alike:
-// they are those of even parts with as much less interference, k (Rz_A + Rz_I).
+// N5: where the surfaces are rough, smoothing takes its share of the pressure and of the force
+// alike: they are those of even parts with as much less interference, k (Rz_A + Rz_I).
 TEST(FitForce, SmoothingTakesItsShareOfPressureAndForceAtEveryDepth) {
   for (const Smoothing edition : {Smoothing::kDin2001, Smoothing::kDin2017}) {
     FitForceParameters p = MakePair(-20);

@@ -459,12 +459,12 @@ void AddSeal(const std::filesystem::path& path) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
   sqlite3_stmt* newest = nullptr;
-  ASSERT_EQ(sqlite3_prepare_v2(
-                database,
-                "SELECT id, t_ns, hash, chunks, chunk_hash, events, event_hash, commands, "
-                "command_hash, frames, frame_hash FROM seal ORDER BY id DESC LIMIT 1",
-                -1, &newest, nullptr),
-            SQLITE_OK);
+  ASSERT_EQ(
+      sqlite3_prepare_v2(database,
+                         "SELECT id, t_ns, hash, chunks, chunk_hash, events, event_hash, commands, "
+                         "command_hash, frames, frame_hash FROM seal ORDER BY id DESC LIMIT 1",
+                         -1, &newest, nullptr),
+      SQLITE_OK);
   ASSERT_EQ(sqlite3_step(newest), SQLITE_ROW);
   Seal seal;
   seal.t_ns = sqlite3_column_int64(newest, 1);

@@ -146,8 +146,8 @@ TEST(MidRanks, ShareRanksAmongTies) {
   EXPECT_EQ(mid.tie_sum, 24);
 }
 
-// Decimals are not exact: 12.3 - 12.1, 10.3 - 10.1 and 0.3 - 0.1 differ by rounding, 0.1 + 0.2 is not
-// 0.3. Whole tenths have none of that, and hardly any size of unit changes an order.
+// Decimals are not exact: 12.3 - 12.1, 10.3 - 10.1 and 0.3 - 0.1 differ by rounding, 0.1 + 0.2 is
+// not 0.3. Whole tenths have none of that, and hardly any size of unit changes an order.
 TEST(Wilcoxon, OfDecimalsIsThatOfWholeTenthsInAnyUnit) {
   const std::vector<double> first{121, 101, 1, 3, 45, 7, 88, 30, 11, 64};
   const std::vector<double> second{123, 103, 3, 1, 41, 12, 88, 33, 9, 64};

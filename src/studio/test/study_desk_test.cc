@@ -378,8 +378,8 @@ TEST_F(StudyDeskTest, W12BinaryFramesHoldTheTrueForceForTheExperimenterAlone) {
   double below = 0;
   ASSERT_TRUE(hvas::testing::AwaitTrue([&] {
     below = std::min(below + 0.2e-3, 0.2);
-    bench_.hands().Move(
-        0, spatial::Pose(taken->X_WH.q(), taken->X_WH.p() - Vec3(0, 0, below)), true);
+    bench_.hands().Move(0, spatial::Pose(taken->X_WH.q(), taken->X_WH.p() - Vec3(0, 0, below)),
+                        true);
     hub_.PublishFrame();
     for (const auto& [id, link] : {std::pair(experimenter_, &experimenter_link_),
                                    std::pair(participant_, &participant_link_)}) {
