@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,20 @@ TEST(Sobol, IndicesOfTheIshigamiFunctionAreTheAnalyticOnes) {
     EXPECT_LT(index.first_ci.low, index.first);
     EXPECT_GT(index.first_ci.high, index.first);
     EXPECT_LT(index.total_ci.high - index.total_ci.low, 0.03);
+  }
+}
+
+// An interval of ten resamples ends near the least and the largest of them, so that none may be far
+// from the index: its standard error with so many rows is below 0.01.
+TEST(Sobol, EveryResampleIsNearTheIndex) {
+  const auto indices = CalcSobol(Evaluate(Ishigami, 65536), {10, 1, 0.95});
+  ASSERT_TRUE(indices);
+  for (const SobolIndex& index : *indices) {
+    for (const auto& [ci, value] :
+         {std::pair(index.first_ci, index.first), std::pair(index.total_ci, index.total)}) {
+      EXPECT_NEAR(ci.low, value, 0.03);
+      EXPECT_NEAR(ci.high, value, 0.03);
+    }
   }
 }
 
