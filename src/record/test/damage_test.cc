@@ -412,7 +412,7 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
   };
 
   constexpr std::array kCases{
-      Case{"DELETE FROM chunk WHERE id = 2", "chunk 2"},
+      Case{"DELETE FROM chunk WHERE id = 2", "chunk 2, before the one at 1.002 s, is missing"},
       Case{"DELETE FROM chunk WHERE id = 5", "the last chunk"},
       Case{"DELETE FROM chunk WHERE id >= 3", "the last 3 of 5 chunks"},
       Case{"DELETE FROM chunk", "the last 5 of 5 chunks"},
@@ -421,8 +421,9 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
       Case{"DELETE FROM event", "the last 3 of 3 events"},
       Case{"DELETE FROM event WHERE id = 1", "event 1"},
       Case{"DELETE FROM event WHERE id = 3", "the last event"},
-      Case{"INSERT INTO event SELECT 4, t_ns, kind, occurrence, json, checksum FROM event LIMIT 1",
-           "event 4"},
+      Case{"INSERT INTO event SELECT 4, t_ns, kind, occurrence, json, checksum FROM event "
+           "WHERE id = 3",
+           "event 4, at 0.002 s, was added"},
       Case{"DELETE FROM command WHERE id = 3", "the last command"},
       Case{"DELETE FROM frame", "frames"},
       Case{"UPDATE frame SET t_ns = t_ns + 1 WHERE id = 2", "frame 1 to 3"},

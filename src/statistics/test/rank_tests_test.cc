@@ -188,6 +188,22 @@ TEST(TieTolerance, IsAboveRoundingAndFarBelowWhatIsMeasured) {
   }
 }
 
+// Differences from nothing, or from what rounding has left of nothing, are as exact as the values.
+TEST(TieTolerance, IsThatOfTheLargerSampleInEitherOrder) {
+  const std::vector<double> nothing{0.1 + 0.2 - 0.3, 0, 0, 0};
+  const std::vector<double> values{0, 0.1 + 0.2, 0.3, 0.7};
+  ASSERT_NE(nothing[0], 0);
+  ASSERT_NE(values[1], values[2]);
+  const auto whole = TestWilcoxon(std::vector<double>{0, 0, 0, 0}, std::vector<double>{0, 3, 3, 7});
+  const auto up = TestWilcoxon(nothing, values);
+  const auto down = TestWilcoxon(values, nothing);
+  ASSERT_TRUE(whole && up && down);
+  EXPECT_EQ(up->zero_count, 1U);
+  EXPECT_EQ(down->zero_count, 1U);
+  EXPECT_EQ(*up->z, *whole->z);
+  EXPECT_EQ(*down->z, -*whole->z);
+}
+
 /** All 2^n signs, by brute force. */
 double EnumerateWilcoxon(const std::vector<double>& differences) {
   std::vector<double> sizes;
