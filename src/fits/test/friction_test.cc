@@ -67,8 +67,8 @@ TEST(JointFrictionTable, IsSourcedAndHasWhatTheLawsUse) {
 }
 
 // DIN 7190-1, 5.2 states one number for each pair pressed along the axis. The rows of a pair are in
-// the order of release and sliding, dry and oiled: what slides is held by less than what is still to
-// be released, and what is oiled by less than what is dry.
+// the order of release and sliding, dry and oiled: what slides is held by less than what is still
+// to be released, and what is oiled by less than what is dry.
 TEST(JointFrictionTable, LongitudinalFitsHoldLessWhereTheySlideAndWhereTheyAreOiled) {
   const auto find = [](std::string_view pair, std::string_view state, std::string_view symbol) {
     const auto& table = JointFrictionTable();

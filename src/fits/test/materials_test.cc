@@ -47,14 +47,14 @@ TEST(Materials, AreAsStiffAndDenseAndExpandAsTheirClass) {
   };
 
   constexpr std::array kClasses{
-      Class{"steel", 205, 0.1, 7850, 13.5},    Class{"grey iron", 110, 0.25, 7150, 11},
+      Class{"steel", 205, 0.1, 7850, 13.5},      Class{"grey iron", 110, 0.25, 7150, 11},
       Class{"ductile iron", 170, 0.1, 7150, 12}, Class{"aluminium bronze", 118, 0.1, 7600, 16.5},
-      Class{"aluminium", 72, 0.1, 2730, 22.5}, Class{"copper", 120, 0.1, 8930, 17},
-      Class{"brass", 105, 0.1, 8450, 20},      Class{"bronze", 108, 0.12, 8750, 18},
-      Class{"titanium", 108, 0.1, 4450, 9},    Class{"magnesium", 45, 0.1, 1800, 26},
-      Class{"nickel", 207, 0.1, 8300, 13},     Class{"zinc", 90, 0.15, 6600, 27},
-      Class{"POM", 2.8, 0.2, 1410, 110},       Class{"PA66", 3, 0.2, 1140, 80},
-      Class{"PEEK", 3.7, 0.2, 1310, 50},       Class{"PTFE", 0.5, 0.2, 2170, 130}};
+      Class{"aluminium", 72, 0.1, 2730, 22.5},   Class{"copper", 120, 0.1, 8930, 17},
+      Class{"brass", 105, 0.1, 8450, 20},        Class{"bronze", 108, 0.12, 8750, 18},
+      Class{"titanium", 108, 0.1, 4450, 9},      Class{"magnesium", 45, 0.1, 1800, 26},
+      Class{"nickel", 207, 0.1, 8300, 13},       Class{"zinc", 90, 0.15, 6600, 27},
+      Class{"POM", 2.8, 0.2, 1410, 110},         Class{"PA66", 3, 0.2, 1140, 80},
+      Class{"PEEK", 3.7, 0.2, 1310, 50},         Class{"PTFE", 0.5, 0.2, 2170, 130}};
   for (const Material& m : Materials()) {
     SCOPED_TRACE(m.name);
     const std::string_view text = m.group == "polymer" ? m.name : m.group;
