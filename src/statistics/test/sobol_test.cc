@@ -67,16 +67,16 @@ TEST(Sobol, IndicesOfTheIshigamiFunctionAreTheAnalyticOnes) {
   }
 }
 
-// An interval of ten resamples ends near the least and the largest of them, so that none may be far
-// from the index: its standard error with so many rows is below 0.01.
+// An interval of nearly all ends at the least and the largest of a hundred resamples, of which none may
+// be far from the index: the standard error of 16,384 rows is 0.01, five times that is not reached.
 TEST(Sobol, EveryResampleIsNearTheIndex) {
-  const auto indices = CalcSobol(Evaluate(Ishigami, 65536), {10, 1, 0.95});
-  ASSERT_TRUE(indices);
+  const auto indices = CalcSobol(Evaluate(Ishigami, 16384), {100, 1, 0.9999});
+  ASSERT_TRUE(indices) << indices.error().ToString();
   for (const SobolIndex& index : *indices) {
     for (const auto& [ci, value] :
          {std::pair(index.first_ci, index.first), std::pair(index.total_ci, index.total)}) {
-      EXPECT_NEAR(ci.low, value, 0.03);
-      EXPECT_NEAR(ci.high, value, 0.03);
+      EXPECT_NEAR(ci.low, value, 0.05);
+      EXPECT_NEAR(ci.high, value, 0.05);
     }
   }
 }
