@@ -67,8 +67,9 @@ TEST(Sobol, IndicesOfTheIshigamiFunctionAreTheAnalyticOnes) {
   }
 }
 
-// An interval of nearly all ends at the least and the largest of a hundred resamples, of which none may
-// be far from the index: the standard error of 16,384 rows is 0.01, five times that is not reached.
+// An interval of nearly all ends at the least and the largest of a hundred resamples, of which none
+// may be far from the index: the standard error of 16,384 rows is 0.01, five times that is not
+// reached.
 TEST(Sobol, EveryResampleIsNearTheIndex) {
   const auto indices = CalcSobol(Evaluate(Ishigami, 16384), {100, 1, 0.9999});
   ASSERT_TRUE(indices) << indices.error().ToString();
