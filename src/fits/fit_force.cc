@@ -153,11 +153,11 @@ Result<FitForce> FitForce::Make(const FitForceParameters& parameters) {
   fit.mean_clearance_ = 0.5 * (p.hole_diameter - p.shaft_diameter);
   fit.shaft_diameter_ = p.shaft_diameter;
   fit.pressure_per_interference_ = press->pressure_per_interference;
-  fit.smoothing_ = 0.5 * press->smoothing_loss;
+  fit.smoothing_loss_ = press->smoothing_loss;
   fit.elastic_limit_ = std::min(press->hub_limit.von_mises, press->shaft_limit.von_mises);
   fit.clearance_ = std::move(land.clearances);
-  const double least = *std::min_element(fit.clearance_.begin(), fit.clearance_.end());
-  fit.max_pressure_ = 2 * fit.pressure_per_interference_ * std::max(0.0, -least - fit.smoothing_);
+  fit.max_pressure_ =
+      fit.CalcPressureOf(*std::min_element(fit.clearance_.begin(), fit.clearance_.end()));
   double play = std::numeric_limits<double>::infinity();
   for (const double s : fit.clearance_) {
     play = std::min(play, std::max(0.0, s));
@@ -185,8 +185,13 @@ double FitForce::CalcRadialPlay(double depth) const noexcept {
   return std::min(play_[Locate(depth).interval], std::max(0.0, CalcClearance(depth)));
 }
 
+double FitForce::CalcPressureOf(double clearance) const noexcept {
+  return 2 * pressure_per_interference_ *
+         std::max(0.0, -CalcSmoothedClearance(clearance, smoothing_loss_));
+}
+
 double FitForce::CalcPressure(double depth) const noexcept {
-  return 2 * pressure_per_interference_ * std::max(0.0, -CalcClearance(depth) - smoothing_);
+  return CalcPressureOf(CalcClearance(depth));
 }
 
 double FitForce::CalcNormalForce(double depth) const noexcept {

@@ -143,6 +143,9 @@ class FitForce {
 
   [[nodiscard]] Place Locate(double depth) const noexcept;
 
+  /** The pressure where the clearance is S [Pa]. */
+  [[nodiscard]] double CalcPressureOf(double clearance) const noexcept;
+
   PressStroke forces_;
   FitFriction friction_;
   double length_{0};
@@ -152,7 +155,7 @@ class FitForce {
   double mean_clearance_{0};
   double shaft_diameter_{0};
   double pressure_per_interference_{0};  // c_p [Pa/m].
-  double smoothing_{0};                  // G / 2 [m].
+  double smoothing_loss_{0};             // G [m].
   double max_pressure_{0};               // [Pa]
   double elastic_limit_{0};              // [Pa]
   std::vector<double> clearance_;        // S at the stations [m].

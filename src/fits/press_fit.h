@@ -20,6 +20,14 @@ enum class Smoothing {
 
 [[nodiscard]] double GetSmoothingFactor(Smoothing edition) noexcept;
 
+/** Calculates the radial clearance that is left where the peaks are flat [m]: S + G / 2.
+ @param clearance  S between the peaks [m], negative: interference.
+ @param smoothing_loss  G, of the diametral interference [m]. */
+[[nodiscard]] constexpr double CalcSmoothedClearance(double clearance,
+                                                     double smoothing_loss) noexcept {
+  return clearance + 0.5 * smoothing_loss;
+}
+
 /** Elastic constants and strength of one side. */
 struct PressMaterial {
   double youngs_modulus{210e9};     ///< E [Pa], > 0.

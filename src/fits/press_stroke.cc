@@ -91,7 +91,7 @@ Result<PressStroke> PressStroke::Make(std::vector<StrokeLand> lands) {
               std::move(source.clearances),
               {0}};
     for (double& s : land.s) {
-      s += 0.5 * fit->smoothing_loss;
+      s = CalcSmoothedClearance(s, fit->smoothing_loss);
     }
     for (std::size_t j = 1; j < land.s.size(); ++j) {
       land.integral.push_back(land.integral.back() +

@@ -208,6 +208,36 @@ TEST(FitForce, IsThePressFitOfItsDepth) {
   }
 }
 
+// N5: where the surfaces are rough, smoothing takes its share of the pressure and of the force
+// alike: they are those of even parts with as much less interference, k (Rz_A + Rz_I).
+TEST(FitForce, SmoothingTakesItsShareOfPressureAndForceAtEveryDepth) {
+  for (const Smoothing edition : {Smoothing::kDin2001, Smoothing::kDin2017}) {
+    FitForceParameters p = MakePair(-20);
+    p.roughness = 6.3e-6;
+    p.seed = 3;
+    p.smoothing = Smoothing::kNone;
+    const FitForce peaks = *FitForce::Make(p);
+    p.smoothing = edition;
+    const FitForce flat = *FitForce::Make(p);
+    const double loss = GetSmoothingFactor(edition) * 2 * 6.3e-6;  // diametral
+    p.smoothing = Smoothing::kNone;
+    p.hole_diameter += loss;
+    const FitForce looser = *FitForce::Make(p);
+    const double stiffness = peaks.CalcPressure(0.02) / -(2 * peaks.CalcClearance(0.02));
+    EXPECT_NEAR(peaks.max_pressure() - flat.max_pressure(), stiffness * loss,
+                1e-9 * peaks.max_pressure());
+    for (const double depth : {0.4e-3, 11.1e-3, 29e-3, 50e-3}) {
+      EXPECT_EQ(flat.CalcClearance(depth), peaks.CalcClearance(depth)) << "as measured";
+      EXPECT_NEAR(peaks.CalcPressure(depth) - flat.CalcPressure(depth), stiffness * loss,
+                  1e-9 * peaks.max_pressure());
+      EXPECT_NEAR(flat.CalcPressure(depth), looser.CalcPressure(depth),
+                  1e-9 * peaks.max_pressure());
+      EXPECT_NEAR(flat.CalcAxialResistance(depth), looser.CalcAxialResistance(depth),
+                  1e-9 * peaks.max_resistance());
+    }
+  }
+}
+
 // N5: breaking loose takes more than sliding on, and nothing in between jumps.
 TEST(FitForce, ReleaseFallsToItsSlidingValueWithSpeed) {
   const FitForce fit = *FitForce::Make(MakePair(-20));

@@ -3,6 +3,7 @@
 #include "fits/friction.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,38 @@ TEST(JointFrictionTable, IsSourcedAndHasWhatTheLawsUse) {
           << value;
     }
   }
+}
+
+// DIN 7190-1, 5.2 states one number for each pair pressed along the axis. The rows of a pair are in
+// the order of release and sliding, dry and oiled: what slides is held by less than what is still
+// to be released, and what is oiled by less than what is dry.
+TEST(JointFrictionTable, LongitudinalFitsHoldLessWhereTheySlideAndWhereTheyAreOiled) {
+  const auto find = [](std::string_view pair, std::string_view state, std::string_view symbol) {
+    const auto& table = JointFrictionTable();
+    return std::find_if(table.begin(), table.end(), [&](const JointFriction& row) {
+      return row.pair == pair && row.condition == state && row.symbol == symbol;
+    });
+  };
+  int compared = 0;
+  for (const JointFriction& row : JointFrictionTable()) {
+    if (!row.condition.starts_with("longitudinal")) {
+      continue;
+    }
+    SCOPED_TRACE(::testing::Message() << row.pair << ", " << row.condition << ", " << row.symbol);
+    EXPECT_EQ(row.low, row.high);
+    const auto released = find(row.pair, row.condition, "nu_ll");
+    ASSERT_NE(released, JointFrictionTable().end());
+    const auto dry = find(row.pair, "longitudinal, dry", row.symbol);
+    if (row.symbol == "nu_rl") {
+      EXPECT_LT(row.high, released->low);
+      ++compared;
+    }
+    if (row.condition == "longitudinal, oiled" && dry != JointFrictionTable().end()) {
+      EXPECT_LT(row.high, dry->low);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 20);
 }
 
 TEST(SurfaceOf, PutsTheMaterialsWhereTheyBelong) {

@@ -1,7 +1,10 @@
 #include "fits/materials.h"
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +32,39 @@ TEST(Materials, AreFortyWithValuesOfSolids) {
     // plastics alike (Ashby, Materials Selection in Mechanical Design, chart of E and alpha).
     EXPECT_GT(m.youngs_modulus * m.thermal_expansion, 5e4);
     EXPECT_LT(m.youngs_modulus * m.thermal_expansion, 4e6);
+  }
+}
+
+// Alloying and heat treatment change the strength of a metal by much, its stiffness, density and
+// expansion by little (Ashby, Materials Selection in Mechanical Design, appendix A: classes).
+TEST(Materials, AreAsStiffAndDenseAndExpandAsTheirClass) {
+  struct Class {
+    const char* word;  // Of the group or, for a plastic, the name.
+    double modulus_gpa;
+    double spread;  // Of the modulus, as a share.
+    double density;
+    double expansion_um;  // For each metre and kelvin.
+  };
+
+  constexpr std::array kClasses{
+      Class{"steel", 205, 0.1, 7850, 13.5},      Class{"grey iron", 110, 0.25, 7150, 11},
+      Class{"ductile iron", 170, 0.1, 7150, 12}, Class{"aluminium bronze", 118, 0.1, 7600, 16.5},
+      Class{"aluminium", 72, 0.1, 2730, 22.5},   Class{"copper", 120, 0.1, 8930, 17},
+      Class{"brass", 105, 0.1, 8450, 20},        Class{"bronze", 108, 0.12, 8750, 18},
+      Class{"titanium", 108, 0.1, 4450, 9},      Class{"magnesium", 45, 0.1, 1800, 26},
+      Class{"nickel", 207, 0.1, 8300, 13},       Class{"zinc", 90, 0.15, 6600, 27},
+      Class{"POM", 2.8, 0.2, 1410, 110},         Class{"PA66", 3, 0.2, 1140, 80},
+      Class{"PEEK", 3.7, 0.2, 1310, 50},         Class{"PTFE", 0.5, 0.2, 2170, 130}};
+  for (const Material& m : Materials()) {
+    SCOPED_TRACE(m.name);
+    const std::string_view text = m.group == "polymer" ? m.name : m.group;
+    const auto* of = std::find_if(kClasses.begin(), kClasses.end(), [&](const Class& c) {
+      return text.find(c.word) != std::string_view::npos;
+    });
+    ASSERT_NE(of, kClasses.end());
+    EXPECT_NEAR(1e-9 * m.youngs_modulus, of->modulus_gpa, of->spread * of->modulus_gpa);
+    EXPECT_NEAR(m.density, of->density, 0.03 * of->density);
+    EXPECT_NEAR(1e6 * m.thermal_expansion, of->expansion_um, 0.3 * of->expansion_um);
   }
 }
 

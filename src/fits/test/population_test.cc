@@ -90,6 +90,15 @@ TEST(Population, SharesOfInterferenceAreThoseOfTheNormalDistribution) {
         MakeBatch({MakeLand(*SizeDistribution::FromCapability(limits.hole, 1, 1, true),
                             *SizeDistribution::FromCapability(limits.shaft, 1, 1, true), 6.3)}));
     EXPECT_NEAR(batch.any_interference_share, c.share, 0.0055) << c.fit;
+    // Of a single land the share is its own, and the curve of its clearance crosses zero there.
+    ASSERT_EQ(batch.lands.size(), 1U);
+    EXPECT_EQ(batch.lands[0].interference_share, batch.any_interference_share) << c.fit;
+    const std::vector<double>& curve = batch.lands[0].clearance_curve;
+    ASSERT_FALSE(curve.empty());
+    EXPECT_TRUE(std::is_sorted(curve.begin(), curve.end()));
+    const auto below = std::lower_bound(curve.begin(), curve.end(), 0.0) - curve.begin();
+    EXPECT_NEAR(static_cast<double>(below) / static_cast<double>(curve.size()), c.share, 0.03)
+        << c.fit;
   }
 }
 

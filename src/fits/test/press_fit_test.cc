@@ -1,8 +1,10 @@
 #include "fits/press_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -184,6 +186,22 @@ TEST(PressFit, RequiredPressureMatchesForceAndTorqueAlone) {
   EXPECT_NEAR(units::ToMpa(CalcRequiredPressure(p, 1.25 * 2500, 1.25 * 800, 1.4)), 33.9, 0.05);
 }
 
+// The joint slips the way in which it holds less, whichever that is.
+TEST(PressFit, RequiredPressureIsThatOfTheSmallerFriction) {
+  PressFitParameters p = MakeFit(70, 140, 0, 84, 60, 0.09, 215);
+  for (const auto& [release, turning] : {std::pair(0.07, 0.16), std::pair(0.16, 0.07)}) {
+    p.friction_release = release;
+    p.friction_torque = turning;
+    const double required = CalcRequiredPressure(p, 2500, 800, 1);
+    PressFitParameters joint = p;
+    joint.interference = *CalcInterferenceFor(required, p);
+    const PressFit fit = *CalcPressFit(joint);
+    // Friction along and about the axis holds the load's resultant at the joint's surface.
+    const double resultant = std::hypot(2500, 800 / 0.035);
+    EXPECT_NEAR(std::min(fit.push_out_force, fit.torque / 0.035), resultant, 1e-9 * resultant);
+  }
+}
+
 TEST(PressFit, RefusesWhatIsNoJointAndNamesIt) {
   const auto message = [](auto change) {
     PressFitParameters p = MakeFit(40, 80, 0, 42, 50, 0.15);
@@ -222,6 +240,29 @@ TEST(PressFit, FlatWallsArePressedAsSlabsInPlaneStrain) {
   EXPECT_NEAR(fit.outline, 0.06, 1e-15);
   EXPECT_NEAR(fit.press_in_force, 0.15 * 2 * 0.03 * 0.02 * pressure, 1e-9 * fit.press_in_force);
   EXPECT_EQ(fit.torque, 0);
+}
+
+// A slab in compression begins to yield where the pressure is its strength, a wall as the tongue;
+// the margin is that of the weaker one.
+TEST(PressFit, FlatWallsYieldWhereThePressureIsTheirStrength) {
+  PressFitParameters p = MakeFlatFit();
+  p.hub.yield_strength = 145e6;
+  p.shaft.yield_strength = 235e6;
+  for (const double pressure : {100e6, 144e6, 146e6}) {
+    p.interference = *CalcInterferenceFor(pressure, p);
+    const PressFit fit = *CalcPressFit(p);
+    EXPECT_NEAR(fit.margin_von_mises(), 145e6 / pressure, 1e-9);
+    EXPECT_NEAR(fit.margin_tresca(), 145e6 / pressure, 1e-9);
+    EXPECT_NEAR(fit.margin_shaft(), 235e6 / pressure, 1e-9);
+    EXPECT_NEAR(-fit.hub_bore.radial / fit.hub_limit.tresca, pressure / 145e6, 1e-9);
+  }
+  EXPECT_NEAR(CalcLargestPressure(*CalcPressFit(p)), 145e6, 1);
+  // The strength of what has no yield point is its tensile strength, which compression exceeds.
+  p.hub.yield_strength = 0;
+  p.hub.tensile_strength = 250e6;
+  EXPECT_NEAR(CalcPressFit(p)->hub_limit.von_mises, 250e6, 1);
+  p.hub.tensile_strength = 0;
+  EXPECT_EQ(CalcPressFit(p)->hub_limit.von_mises, std::numeric_limits<double>::infinity());
 }
 
 // An independent way to the same pressure: the split of the interference with the least energy.

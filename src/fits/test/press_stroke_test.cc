@@ -43,6 +43,20 @@ TEST(PressStroke, ForceAtTheEndDoesNotDependOnTheStep) {
   }
 }
 
+// N4: a smoothed joint pushed in all the way has the closed form's force, which loses G as well.
+TEST(PressStroke, SmoothedForceAtTheEndIsTheClosedForm) {
+  for (const Smoothing edition : {Smoothing::kDin2001, Smoothing::kDin2017}) {
+    StrokeLand land = PaperLand();
+    land.press.hub_roughness = 4e-6;
+    land.press.shaft_roughness = 6.3e-6;
+    land.press.smoothing = edition;
+    const PressFit joint = *CalcPressFit(land.press);
+    const StrokeForce force = PressStroke::Make({land})->CalcForce(0.05);
+    EXPECT_NEAR(force.in, joint.press_in_force, 1e-9 * joint.press_in_force);
+    EXPECT_LT(force.in, 0.95 * 77931.133);
+  }
+}
+
 // N4: partly in, a joint has the force of one as long as the part that is in; out of it, none.
 TEST(PressStroke, PartialEngagementIsAShorterJoint) {
   const PressStroke stroke = *PressStroke::Make({PaperLand()});

@@ -11,11 +11,13 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include "record/ledger.h"
 #include "record/reader.h"
 #include "record/recorder.h"
 #include "record/test/sample.h"
@@ -410,7 +412,7 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
   };
 
   constexpr std::array kCases{
-      Case{"DELETE FROM chunk WHERE id = 2", "chunk 2"},
+      Case{"DELETE FROM chunk WHERE id = 2", "chunk 2, before the one at 1.002 s, is missing"},
       Case{"DELETE FROM chunk WHERE id = 5", "the last chunk"},
       Case{"DELETE FROM chunk WHERE id >= 3", "the last 3 of 5 chunks"},
       Case{"DELETE FROM chunk", "the last 5 of 5 chunks"},
@@ -419,8 +421,9 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
       Case{"DELETE FROM event", "the last 3 of 3 events"},
       Case{"DELETE FROM event WHERE id = 1", "event 1"},
       Case{"DELETE FROM event WHERE id = 3", "the last event"},
-      Case{"INSERT INTO event SELECT 4, t_ns, kind, occurrence, json, checksum FROM event LIMIT 1",
-           "event 4"},
+      Case{"INSERT INTO event SELECT 4, t_ns, kind, occurrence, json, checksum FROM event "
+           "WHERE id = 3",
+           "event 4, at 0.002 s, was added"},
       Case{"DELETE FROM command WHERE id = 3", "the last command"},
       Case{"DELETE FROM frame", "frames"},
       Case{"UPDATE frame SET t_ns = t_ns + 1 WHERE id = 2", "frame 1 to 3"},
@@ -450,6 +453,55 @@ TEST_F(DamagedRecord, WhateverIsGoneOrOtherwiseIsFoundAndNamed) {
     EXPECT_NE(verified.error().message.find(tampered.named), std::string::npos)
         << verified.error().message;
   }
+}
+
+/** Adds a seal that is as valid as any, with the hash of its own, after the newest one. */
+void AddSeal(const std::filesystem::path& path) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  sqlite3_stmt* newest = nullptr;
+  ASSERT_EQ(
+      sqlite3_prepare_v2(database,
+                         "SELECT id, t_ns, hash, chunks, chunk_hash, events, event_hash, commands, "
+                         "command_hash, frames, frame_hash FROM seal ORDER BY id DESC LIMIT 1",
+                         -1, &newest, nullptr),
+      SQLITE_OK);
+  ASSERT_EQ(sqlite3_step(newest), SQLITE_ROW);
+  Seal seal;
+  seal.t_ns = sqlite3_column_int64(newest, 1);
+  int column = 3;
+  for (Ledger::Rows& rows : seal.rows) {
+    rows.count = sqlite3_column_int64(newest, column++);
+    rows.hash = sqlite3_column_int64(newest, column++);
+  }
+  const std::int64_t id = sqlite3_column_int64(newest, 0);
+  const std::int64_t hash = CalcHash(seal, sqlite3_column_int64(newest, 2));
+  sqlite3_finalize(newest);
+  sqlite3_close(database);
+  Tamper(path, ("INSERT INTO seal (id, t_ns, is_last, chunks, chunk_hash, events, event_hash, "
+                "commands, command_hash, frames, frame_hash, entries, hash) SELECT id + 1, t_ns, "
+                "0, chunks, chunk_hash, events, event_hash, commands, command_hash, frames, "
+                "frame_hash, '', " +
+                std::to_string(hash) + " FROM seal WHERE id = " + std::to_string(id))
+                   .c_str());
+}
+
+TEST_F(DamagedRecord, ValidSealAfterTheLastOneIsFound) {
+  AddSeal(file_.path());
+  const auto verified = Reader::Open(file_.path())->Verify();
+  ASSERT_FALSE(verified.has_value());
+  EXPECT_NE(verified.error().message.find("was added after the last one"), std::string::npos)
+      << verified.error().message;
+}
+
+// A record that ended by itself may be sealed on; there the seal is in the chain of the others.
+TEST(KilledRecorder, LeavesARecordToWhichAValidSealBelongs) {
+  const TemporaryFile file("sealed on.hvas");
+  RecordAndKill({file.path()}, 2000, {});
+  ASSERT_TRUE(Reader::Open(file.path())->Verify().has_value());
+  AddSeal(file.path());
+  const auto verified = Reader::Open(file.path())->Verify();
+  EXPECT_TRUE(verified.has_value()) << verified.error().ToString();
 }
 
 TEST_F(DamagedRecord, NewerLayoutIsRefusedWithItsNumber) {

@@ -271,6 +271,18 @@ TEST(Recorder, CountsFramesThatFoundNoRoom) {
   EXPECT_EQ(kept + refused, kBurst);
 }
 
+TEST(Recorder, KeepsAFrameThatJustFillsTheRoomAndNoLargerOne) {
+  for (const bool is_larger : {false, true}) {
+    RecorderOptions options;
+    options.is_threaded = true;
+    options.waiting_frame_bytes = 1000;
+    const std::unique_ptr<Recorder> recorder = MakeRecorder(options);
+    EXPECT_EQ(recorder->AddFrame({0, MakeBytes(1, is_larger ? 1001 : 1000)}), !is_larger);
+    ASSERT_TRUE(recorder->Finish().has_value());
+    EXPECT_EQ(recorder->dropped_frames(), is_larger ? 1U : 0U);
+  }
+}
+
 // N7, and the digest by which two runs of one seed are compared.
 TEST(RecorderDigest, IsEqualForEqualSessionsHoweverTheyAreRecorded) {
   const TemporaryFile file("digest.hvas");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -134,6 +135,50 @@ TEST(Power, RefusesDesignsThatCannotBe) {
   wilcoxon.test = PowerTest::kWilcoxon;
   EXPECT_FALSE(EstimatePower(CountDesign{{0.5, 0.6, 0.7}, 15}, wilcoxon, 10));
   EXPECT_FALSE(EstimatePower(CountDesign{{0.5, 0.6}, 15}, options, 2));
+}
+
+TEST(Power, RefusesOptionsFromTheirBoundsOn) {
+  const NormalDesign design{{0, 1}, {1, 1}, 0.5};
+  const auto is_refused = [&](auto change) {
+    PowerOptions options = MakeOptions(PowerTest::kWilcoxon, 100);
+    options.most = 20;
+    change(&options);
+    return !EstimatePower(design, options, 10);
+  };
+  EXPECT_FALSE(is_refused([](PowerOptions*) {}));
+  for (const double alpha : {0.0, 0.5, std::nan("")}) {
+    EXPECT_TRUE(is_refused([&](PowerOptions* o) { o->alpha = alpha; })) << alpha;
+  }
+  for (const double target : {0.0, 1.0, std::nan("")}) {
+    EXPECT_TRUE(is_refused([&](PowerOptions* o) { o->target = target; })) << target;
+  }
+  for (const int runs : {99, 1'000'001}) {
+    EXPECT_TRUE(is_refused([&](PowerOptions* o) { o->runs = runs; })) << runs;
+  }
+  for (const int most : {0, 9, 10'001}) {
+    EXPECT_TRUE(is_refused([&](PowerOptions* o) { o->most = most; })) << most;
+  }
+  EXPECT_FALSE(is_refused([](PowerOptions* o) { o->most = 10; }));
+}
+
+TEST(Power, ProgressRisesFromNothingThroughEachTenthOfTheRuns) {
+  std::vector<double> shares;
+  const PowerOptions options = MakeOptions(PowerTest::kWilcoxon, 1000);
+  const auto point = EstimatePower(NormalDesign{{0, 1}, {1, 1}, 0.5}, options, 10,
+                                   [&](int participants, double share) {
+                                     EXPECT_EQ(participants, 10);
+                                     shares.push_back(share);
+                                   });
+  ASSERT_TRUE(point);
+  ASSERT_GE(shares.size(), 10U);
+  EXPECT_LT(shares.size(), 500U) << "a report of each run is too many";
+  EXPECT_EQ(shares.front(), 0);
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    EXPECT_GT(shares[i], shares[i - 1]);
+    EXPECT_LE(shares[i] - shares[i - 1], 0.1);
+  }
+  EXPECT_LT(shares.back(), 1);
+  EXPECT_GE(shares.back(), 0.9);
 }
 
 }  // namespace

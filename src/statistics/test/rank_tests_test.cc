@@ -146,6 +146,64 @@ TEST(MidRanks, ShareRanksAmongTies) {
   EXPECT_EQ(mid.tie_sum, 24);
 }
 
+// Decimals are not exact: 12.3 - 12.1, 10.3 - 10.1 and 0.3 - 0.1 differ by rounding, 0.1 + 0.2 is
+// not 0.3. Whole tenths have none of that, and hardly any size of unit changes an order.
+TEST(Wilcoxon, OfDecimalsIsThatOfWholeTenthsInAnyUnit) {
+  const std::vector<double> first{121, 101, 1, 3, 45, 7, 88, 30, 11, 64};
+  const std::vector<double> second{123, 103, 3, 1, 41, 12, 88, 33, 9, 64};
+  const auto whole = TestWilcoxon(first, second);
+  ASSERT_TRUE(whole);
+  ASSERT_EQ(whole->zero_count, 2U);
+  for (const double unit : {0.1, 1e-4, 1e-20, 1e20}) {
+    SCOPED_TRACE(unit);
+    std::vector<double> a;
+    std::vector<double> b;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      a.push_back(unit * first[i]);
+      b.push_back(unit * second[i]);
+    }
+    b[6] = unit * 80 + unit * 8;  // As much as a[6] but for rounding.
+    const auto result = TestWilcoxon(a, b);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->zero_count, 2U);
+    EXPECT_EQ(result->positive_rank_sum, whole->positive_rank_sum);
+    EXPECT_EQ(*result->exact_p, *whole->exact_p);
+    EXPECT_EQ(*result->z, *whole->z);
+    EXPECT_EQ(*result->pratt_p, *whole->pratt_p);
+  }
+}
+
+TEST(TieTolerance, IsAboveRoundingAndFarBelowWhatIsMeasured) {
+  // Each of 1000 sums and differences of decimals is as the whole number of tenths says.
+  Random random(20261129);
+  for (int draw = 0; draw < 1000; ++draw) {
+    const double a = std::floor(random.Uniform(1, 1e6));
+    const double b = std::floor(random.Uniform(1, 1e6));
+    const std::vector<double> first{0.1 * (a + b), 0.1 * a};
+    const std::vector<double> second{0.1 * a + 0.1 * b, 0.1 * a * (1 + 1e-9)};
+    const auto differences = CalcDifferences(first, second);
+    ASSERT_TRUE(differences);
+    EXPECT_EQ((*differences)[0], 0) << a << " + " << b;
+    EXPECT_GT((*differences)[1], 0) << a;
+  }
+}
+
+// Differences from nothing, or from what rounding has left of nothing, are as exact as the values.
+TEST(TieTolerance, IsThatOfTheLargerSampleInEitherOrder) {
+  const std::vector<double> nothing{0.1 + 0.2 - 0.3, 0, 0, 0};
+  const std::vector<double> values{0, 0.1 + 0.2, 0.3, 0.7};
+  ASSERT_NE(nothing[0], 0);
+  ASSERT_NE(values[1], values[2]);
+  const auto whole = TestWilcoxon(std::vector<double>{0, 0, 0, 0}, std::vector<double>{0, 3, 3, 7});
+  const auto up = TestWilcoxon(nothing, values);
+  const auto down = TestWilcoxon(values, nothing);
+  ASSERT_TRUE(whole && up && down);
+  EXPECT_EQ(up->zero_count, 1U);
+  EXPECT_EQ(down->zero_count, 1U);
+  EXPECT_EQ(*up->z, *whole->z);
+  EXPECT_EQ(*down->z, -*whole->z);
+}
+
 /** All 2^n signs, by brute force. */
 double EnumerateWilcoxon(const std::vector<double>& differences) {
   std::vector<double> sizes;

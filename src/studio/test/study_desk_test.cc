@@ -3,7 +3,14 @@
 
 #include "studio/study_desk.h"
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -52,12 +59,39 @@ class FakeLink final : public ClientLink {
     EXPECT_EQ(fault, "") << json;
   }
 
-  void SendFrames(std::string) override {}
+  void SendFrames(std::string bytes) override { frames.push_back(std::move(bytes)); }
 
   void Close(const std::string&) override {}
 
+  /** Reads all items of a kind out of the binary messages. */
+  template <typename Item>
+  [[nodiscard]] std::vector<Item> Items() const {
+    std::vector<Item> items;
+    for (std::string_view bytes : frames) {
+      while (!bytes.empty()) {
+        protocol::Header header;
+        std::memcpy(&header, bytes.data(), sizeof(header));
+        if (header.kind == static_cast<std::uint16_t>(protocol::kKindOf<Item>)) {
+          const std::size_t first = items.size();
+          items.resize(first + header.count);
+          std::memcpy(items.data() + first, bytes.data() + sizeof(header),
+                      header.count * sizeof(Item));
+        }
+        bytes.remove_prefix(header.size);
+      }
+    }
+    return items;
+  }
+
   std::vector<std::string> texts;
+  std::vector<std::string> frames;
 };
+
+/** Tells whether any of these components of a force or torque is not zero. */
+template <std::size_t kSize>
+bool IsSome(const std::array<float, kSize>& components) {
+  return std::any_of(components.begin(), components.end(), [](float c) { return c != 0; });
+}
 
 /** Hub, bench and desk, driven by the test's thread alone, as by the server's. */
 class StudyDeskTest : public ::testing::Test {
@@ -317,6 +351,58 @@ TEST_F(StudyDeskTest, W12BlindFitsDoNotReachTheParticipant) {
     does_experimenter_see = does_experimenter_see || text.find("H7/p6") != std::string::npos;
   }
   EXPECT_TRUE(does_experimenter_see);
+}
+
+TEST_F(StudyDeskTest, W12BinaryFramesHoldTheTrueForceForTheExperimenterAlone) {
+  std::string text = kProtocol;
+  text.replace(text.find("time_limit_s: 1}"), 16, "time_limit_s: 600}");
+  Open(false, text, "pressed");
+  BeginTrials();
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_begun");
+  ASSERT_EQ(Do(experimenter_, {{"action", "next"}}), "running");  // past the trial by picking
+  PumpUntil("trial_over");
+  ASSERT_EQ(Do(participant_, {{"action", "ready"}}), "running");
+  PumpUntil("trial_begun");
+  const auto taken = bench_.hands().Take(0, product::OccurrenceId(1));
+  ASSERT_TRUE(taken) << taken.error().ToString();
+  // The peg is pressed downwards until the experimenter sees by which force.
+  const auto is_pressed = [](const FakeLink& link) {
+    const auto hands = link.Items<protocol::HandState>();
+    const auto contacts = link.Items<protocol::ContactPoint>();
+    return std::any_of(hands.begin(), hands.end(),
+                       [](const auto& hand) { return IsSome(hand.f_true_W_n); }) &&
+           std::any_of(contacts.begin(), contacts.end(),
+                       [](const auto& contact) { return IsSome(contact.f_C_W_n); });
+  };
+  double below = 0;
+  ASSERT_TRUE(hvas::testing::AwaitTrue([&] {
+    below = std::min(below + 0.2e-3, 0.2);
+    bench_.hands().Move(0, spatial::Pose(taken->X_WH.q(), taken->X_WH.p() - Vec3(0, 0, below)),
+                        true);
+    hub_.PublishFrame();
+    for (const auto& [id, link] : {std::pair(experimenter_, &experimenter_link_),
+                                   std::pair(participant_, &participant_link_)}) {
+      const protocol::Acknowledgement credit{static_cast<std::uint32_t>(link->frames.size())};
+      std::string bytes;
+      AppendFrame<protocol::Acknowledgement>(std::span(&credit, 1), 1, 1, 0, &bytes);
+      hub_.OnBinary(id, bytes);
+    }
+    return is_pressed(experimenter_link_);
+  }));
+  bool is_felt = false;
+  for (const protocol::HandState& hand : participant_link_.Items<protocol::HandState>()) {
+    EXPECT_FALSE(IsSome(hand.f_true_W_n));
+    EXPECT_FALSE(IsSome(hand.t_true_W_nm));
+    EXPECT_EQ(hand.axial_true_n, 0);
+    is_felt = is_felt || IsSome(hand.f_felt_W_n);
+  }
+  EXPECT_TRUE(is_felt);
+  const auto contacts = participant_link_.Items<protocol::ContactPoint>();
+  EXPECT_FALSE(contacts.empty());
+  for (const protocol::ContactPoint& contact : contacts) {
+    EXPECT_FALSE(IsSome(contact.f_C_W_n));
+  }
 }
 
 // A person, live, and the simulated participant of the same number and seed get the same pairs.
