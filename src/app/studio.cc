@@ -26,6 +26,7 @@
 #include "app/shipped_files.h"
 #include "app/study/study_protocol.h"
 #include "assembly/prepare_model.h"
+#include "base/loop_clock.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "cad/input_file.h"
@@ -33,6 +34,7 @@
 #include "studio/recent_files.h"
 #include "studio/saved_work.h"
 #include "studio/server.h"
+#include "studio/session_pace.h"
 #include "studio/state_folder.h"
 #include "studio/study_desk.h"
 #include "studio/workbench.h"
@@ -54,6 +56,7 @@ struct StudioOptions {
   bool has_workshop{false};      ///< The shipped tools and fixtures are on the table.
   bool is_fresh{false};          ///< Nothing of the work before is gone on with.
   bool new_links{false};         ///< Nor its links.
+  std::string clock{"machine"};  ///< "machine", or "steps" for a steered one.
   std::string study;             ///< A protocol; empty: none.
   std::string participant;       ///< "P01"
   std::filesystem::path folder;  ///< Of the study; empty: the protocol's id.
@@ -288,6 +291,10 @@ int RunStudio(const StudioOptions& options) {
   const auto work = FindWork(options, *folder);
   folder->RemoveUploadsBut(work ? work->file : "");
   studio::WorkbenchOptions bench = MakeWorkbench(options);
+  SteeredClock steps;
+  if (options.clock == "steps") {
+    bench.clock = &steps;
+  }
   bench.work_file = options.study.empty() ? folder->work_file() : std::filesystem::path();
   studio::Workbench workbench(bench);
   studio::ServerOptions served;
@@ -327,6 +334,10 @@ int RunStudio(const StudioOptions& options) {
   }
   fmt::print("{}Press Ctrl+C to end it.\n", about_certificate);
   std::fflush(stdout);
+  std::optional<ClockDriver> driver;
+  if (options.clock == "steps") {
+    driver.emplace(&steps, studio::SessionPace(&workbench.live()));
+  }
   if (work) {
     workbench.opener().Resume(*work);
   } else if (!options.load.file.empty()) {
@@ -396,6 +407,13 @@ void AddStudio(CLI::App* app, int* status) {
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--clock", options->clock,
+                   "Clock of the session: machine, or steps. By steps, time waits for the loops and "
+                   "for the browser that holds a part: a busy machine is slow, and nothing is late. "
+                   "For tests; real devices need the machine's clock")
+      ->check(CLI::IsMember({"machine", "steps"}))
       ->capture_default_str();
   AddGuidanceOptions(command, &options->guidance);
   command->add_flag("--workshop", options->has_workshop,
