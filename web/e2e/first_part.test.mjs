@@ -10,6 +10,7 @@ it("the start page offers examples and devices, and the first part is in its pla
   await page.getByTestId("example-bushing").waitFor();
   await page.getByTestId("start-devices").waitFor();
   assert.equal(await page.getByTestId("start-demo").count(), 1);
+  await page.getByTestId("drop-zone").waitFor();
   await takePicture(page, "start_page");
   await page.getByTestId("example-bushing").click();
   await waitForState(page, ({ hasScene }) => hasScene);

@@ -330,14 +330,16 @@ export function findOutside(page) {
   });
 }
 
-/** How a page may be seen otherwise than by default: in German, in the colours of the system, and twice as large.
- @param viewport  Of the page as it is not enlarged. */
-export function waysToSee({ width, height }) {
-  return {
-    German: { locale: "de-DE" },
-    "forced colours": { forcedColors: "active" },
-    "German at 200 %": { locale: "de-DE", deviceScaleFactor: 2, viewport: { width: width / 2, height: height / 2 } },
-  };
+/** How a page may be seen otherwise than by default, one after the other: in the colours of the system, and twice as large.
+ @param page  One in German, as its words are the longest. */
+export async function seeOtherwise(page, check) {
+  const { width, height } = page.viewportSize();
+  await check("German");
+  await page.emulateMedia({ forcedColors: "active" });
+  await check("forced colours");
+  await page.emulateMedia({ forcedColors: "none" });
+  await page.setViewportSize({ width: width / 2, height: height / 2 });
+  await check("German at 200 %");
 }
 
 export function stateOf(page) {

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <thread>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -102,7 +101,10 @@ TEST(ClockDriverTest, LetsTimeGoOnAsItsPaceAllows) {
   {
     const Counter counter(&clock, ClockDriver::kStepNs);
     std::atomic<bool> is_enough{false};
-    const ClockDriver driver(&clock, [&](const std::stop_token&) { is_enough = ++steps > 20; });
+    const ClockDriver driver(&clock, [&](const std::stop_token&) {
+      is_enough = ++steps > 20;
+      is_enough.notify_one();
+    });
     is_enough.wait(false);
   }
   EXPECT_LE(clock.NowNs(), start_ns + steps * ClockDriver::kStepNs);
