@@ -409,10 +409,11 @@ void AddStudio(CLI::App* app, int* status) {
       ->check(CLI::Range(1000.0, 8000.0))
       ->capture_default_str();
   command
-      ->add_option("--clock", options->clock,
-                   "Clock of the session: machine, or steps. By steps, time waits for the loops and "
-                   "for the browser that holds a part: a busy machine is slow, and nothing is late. "
-                   "For tests; real devices need the machine's clock")
+      ->add_option(
+          "--clock", options->clock,
+          "Clock of the session: machine, or steps. By steps, time waits for the loops and "
+          "for the browser that holds a part: a busy machine is slow, and nothing is late. "
+          "For tests; real devices need the machine's clock")
       ->check(CLI::IsMember({"machine", "steps"}))
       ->capture_default_str();
   AddGuidanceOptions(command, &options->guidance);

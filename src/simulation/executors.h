@@ -114,7 +114,7 @@ struct Execution {
   /** Realtime only: clock by which the loops wait. A steered one ends a wait where `is_done` holds
    after LoopClock::WakeAll(); then `is_done` may be called by any thread that calls that. */
   LoopClock* clock{&MachineClock()};
-  bool is_live{false};    ///< Set by the executor.
+  bool is_live{false};  ///< Set by the executor.
 };
 
 /** Virtual time on the calling thread, one tick at a time, for a caller who does something between

@@ -25,8 +25,8 @@ struct HandPurpose {
   std::uint64_t seed{1};
   spatial::Pose X_WH;  ///< Initial pose of the hand.
   double rate_hz{1000};
-  const LiveTrial* trial{nullptr};  ///< Trial of a study; may be null.
-  haptics::PaperGuidance guidance;  ///< Guidance outside trials, which have their own.
+  const LiveTrial* trial{nullptr};    ///< Trial of a study; may be null.
+  haptics::PaperGuidance guidance;    ///< Guidance outside trials, which have their own.
   LoopClock* clock{&MachineClock()};  ///< Clock of the session.
 };
 

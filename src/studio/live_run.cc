@@ -170,8 +170,7 @@ void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping
     return;
   }
   // The hand closes only after the take is prepared; it would take another part, or none.
-  tasks_.emplace_back(
-      [this, hand, X_WH, is_gripping] { MovePointer(hand, X_WH, is_gripping); });
+  tasks_.emplace_back([this, hand, X_WH, is_gripping] { MovePointer(hand, X_WH, is_gripping); });
 }
 
 void LiveRun::MovePointer(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {

@@ -57,7 +57,8 @@ struct LiveOptions {
 };
 
 /** One section of a live assembly: a simulation of a model that runs by a clock, the machine's or a
- steered one, until this object is destroyed. Another model, another operator and undo each begin a new run from a given state. */
+ steered one, until this object is destroyed. Another model, another operator and undo each begin a
+ new run from a given state. */
 class LiveRun final : private simulation::Sink {
  public:
   LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
@@ -111,7 +112,7 @@ class LiveRun final : private simulation::Sink {
   struct Passing {
     std::size_t to;
     product::OccurrenceId id;
-    std::int64_t give_up_ns;  ///< By the session's clock: after it the part is nobody's.
+    std::int64_t give_up_ns;  ///< Time by the session's clock after which the part is nobody's.
   };
 
   void MovePointer(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);

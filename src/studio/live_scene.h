@@ -86,7 +86,7 @@ class LiveScene {
 
   [[nodiscard]] bool is_holding() const;
 
-  /** As LiveRun::FindOldestInput(); none between two runs. */
+  /** Finds what LiveRun::FindOldestInput() finds; none between two runs. */
   [[nodiscard]] std::optional<std::int64_t> FindOldestInput() const;
 
   [[nodiscard]] LoopClock& clock() const { return *options_.clock; }

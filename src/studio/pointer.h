@@ -11,7 +11,7 @@ namespace hvas::studio {
 
 /** A client's target for the hand. */
 struct PointerInput {
-  std::int64_t t_ns{0};  ///< At its arrival, by the clock of the session.
+  std::int64_t t_ns{0};  ///< Time of its arrival, by the clock of the session.
   spatial::Pose X_WH;
   bool is_gripping{false};
 };

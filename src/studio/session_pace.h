@@ -7,10 +7,10 @@
 
 namespace hvas::studio {
 
-/** How fast a steered clock goes on for a session (ClockDriver): no faster than the wall clock while
- the user works, and as fast as the loops compute while the simulated person does. It waits for the
- browser in whose hand a part is, so that neither a slow machine nor a slow page makes the force
- pause; only a page that is silent for kPatienceNs of the wall clock does. */
+/** How fast a steered clock goes on for a session (ClockDriver): no faster than the wall clock
+ while the user works, and as fast as the loops compute while the simulated person does. It waits
+ for the browser in whose hand a part is, so that neither a slow machine nor a slow page makes the
+ force pause; only a page that is silent for kPatienceNs of the wall clock does. */
 class SessionPace {
  public:
   /** Session time that may pass without an input [ns]: below PointerOperator::kInputTimeoutNs. */

@@ -384,6 +384,18 @@ export async function waitForCalm(page) {
   await nextFrame(page, 2);
 }
 
+/** From now on notes whether something is ever on the page, however short; returns a function that says so. */
+export async function watchFor(page, selector) {
+  const watch = await page.evaluateHandle((wanted) => {
+    const noted = { isSeen: false };
+    const look = () => (noted.isSeen ||= document.querySelector(wanted) !== null);
+    new MutationObserver(look).observe(document.body, { childList: true, subtree: true, attributes: true });
+    look();
+    return noted;
+  }, selector);
+  return () => watch.evaluate(({ isSeen }) => isSeen);
+}
+
 /** Until the server has answered all that the page has sent it so far: what that has led to is known by then. */
 export function waitForAnswer(page) {
   return page.evaluate(() => window.hvas.hasAnswered());

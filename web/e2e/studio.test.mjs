@@ -21,6 +21,7 @@ import {
   waitForPicture,
   waitForPlacement,
   waitForState,
+  watchFor,
   withStudio,
 } from "./harness.mjs";
 
@@ -120,8 +121,11 @@ describe("what the simulated person has put together", () => {
   before(async () => {
     ({ page, complaints } = await openPage(browser, studio.operator));
     await waitForPicture(page);
+    const isTold = await watchFor(page, "[data-testid=demo-runs]");
     await page.getByRole("button", { name: /Auto-assemble/ }).first().click();
     await waitForState(page, ({ placements, demo }) => placements[1] === "placed" && placements[kShaft] === "placed" && !demo);
+    assert.ok(await isTold(), "the page says that the simulated person works");
+    await page.getByTestId("demo-runs").waitFor({ state: "detached" });
   });
   after(() => page.context().close());
 

@@ -1,4 +1,5 @@
-// The three loops with their threads, in steered time: nothing is late, however busy the machine is.
+// The three loops with their threads, in steered time: nothing is late, however busy the machine
+// is.
 #include <atomic>
 #include <thread>
 

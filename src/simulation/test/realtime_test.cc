@@ -1,4 +1,5 @@
-// The loops by the machine's clock: what happens, not when. The other tests of loops steer their time.
+// The loops by the machine's clock: what happens, not when. The other tests of loops steer their
+// time.
 #include <gtest/gtest.h>
 
 #include "simulation/test/session.h"

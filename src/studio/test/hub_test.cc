@@ -44,7 +44,8 @@ class FakeLink final : public ClientLink {
 /** The bench is asked by the test's thread alone, as by the server's. */
 class HubTest : public ::testing::Test {
  protected:
-  HubTest() : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
+  HubTest()
+      : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
   }
 

@@ -41,7 +41,8 @@ class CheckedLink final : public ClientLink {
 
 class ProtocolTest : public ::testing::Test {
  protected:
-  ProtocolTest() : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
+  ProtocolTest()
+      : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
     steers_ = *hub_.Join(Role::kOperator, &link_);
     (void)*hub_.Join(Role::kOperator, &other_link_);

@@ -63,8 +63,9 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   Open(&killed);
   AssignFit(&killed, "H7/h6");
   ASSERT_TRUE(killed.bench.notes().Add({"Ada", "Deburr", kKeptPeg, Vec3(0, 0, 0.01)}));
-  ASSERT_TRUE(killed.log.AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->notes.size() == 1; }))
-      << "without any other change";
+  ASSERT_TRUE(killed.log.AwaitTrue([this] {
+    return LoadWork(file_) && LoadWork(file_)->notes.size() == 1;
+  })) << "without any other change";
   ASSERT_TRUE(killed.bench.demo().DoNext());
   ASSERT_TRUE(killed.log.AwaitTrue([this] { return KeptPlacement() == Placement::kPlaced; }));
   ASSERT_TRUE(killed.log.AwaitTrue([&] { return !killed.bench.live().is_demo(); }));
@@ -106,7 +107,8 @@ TEST_F(KeptWorkTest, WhatWasUndoneIsNotDoneAgain) {
   Bench one(file_);
   Open(&one);
   AssignFit(&one, "H7/h6");
-  ASSERT_TRUE(one.log.AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
+  ASSERT_TRUE(
+      one.log.AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
   ASSERT_TRUE(one.bench.edits().Undo());
   EXPECT_TRUE(one.log.AwaitTrue([this] { return LoadWork(file_)->edits.empty(); }));
 }

@@ -36,7 +36,7 @@ void EventLog::Pass(double seconds) {
 }
 
 bool EventLog::AwaitTrue(const std::function<bool()>& holds) {
-  constexpr std::chrono::minutes kHang(4);  // no claim: below ctest's limit, to say what hangs
+  constexpr std::chrono::minutes kHang(4);      // no claim: below ctest's limit, to say what hangs
   constexpr std::chrono::milliseconds kNap(1);  // for the threads that do not wait by the clock
   const auto end = std::chrono::steady_clock::now() + kHang;
   while (!holds()) {

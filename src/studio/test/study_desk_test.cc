@@ -140,8 +140,8 @@ class StudyDeskTest : public ::testing::Test {
 
   /** Of the trial on the bench [s]. */
   void AwaitElapsed(double seconds) {
-    ASSERT_TRUE(log_.AwaitTrue(
-        [&] { return bench_.trials().trial()->watch().elapsed_s() >= seconds; }));
+    ASSERT_TRUE(
+        log_.AwaitTrue([&] { return bench_.trials().trial()->watch().elapsed_s() >= seconds; }));
   }
 
   std::string Phase() {

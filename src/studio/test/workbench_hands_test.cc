@@ -135,7 +135,8 @@ TEST_F(WorkbenchHandsTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.hands().UseDevice(0, kAddress, 0));
   ASSERT_TRUE(AwaitDevice(0, kAddress, start));
-  EXPECT_TRUE(log_.AwaitTrue([this] { return bench_.hands().Describe()[0]["condition"] == "ready"; }));
+  EXPECT_TRUE(
+      log_.AwaitTrue([this] { return bench_.hands().Describe()[0]["condition"] == "ready"; }));
   const Json hand = bench_.hands().Describe()[0];
   EXPECT_EQ(hand["device"]["is_emulated"], true);
   EXPECT_GT(hand["device"]["max_force_n"], 1);

@@ -122,8 +122,8 @@ TEST_F(WorkbenchOrdersTest, TheOrderIsPartOfTheWorkThatIsKept) {
     one.Open();
     orders = ListOrders(&one);
     ASSERT_TRUE(one.bench.orders().Set(one.Find(orders[1])));
-    ASSERT_TRUE(
-        one.log.AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
+    ASSERT_TRUE(one.log.AwaitTrue(
+        [this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
   }
   const auto work = LoadWork(file_);
   ASSERT_TRUE(work.has_value()) << work.error().ToString();
