@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/clock_place.h"
 #include "simulation/haptic_loop.h"
 
 namespace hvas::simulation {
@@ -67,20 +68,6 @@ void StepPhysics(const Execution& execution) {
     }
   }
 }
-
-/** The place of a thread among those that a clock waits for: left at the end. */
-class ClockPlace {
- public:
-  explicit ClockPlace(LoopClock* clock) noexcept : clock_(clock) {}
-
-  ~ClockPlace() { clock_->Leave(); }
-
-  ClockPlace(const ClockPlace&) = delete;
-  ClockPlace& operator=(const ClockPlace&) = delete;
-
- private:
-  LoopClock* clock_;
-};
 
 void FinishFlight(const Execution& execution) {
   if (execution.flight != nullptr) {
@@ -177,7 +164,7 @@ ExecutionReport RunRealtime(const Execution& given) {
   std::atomic<std::int64_t> t_ns{0};
   const std::int64_t start_ns = MonotonicNs();
   StepPhysics(execution);  // Puts the base in its fixture: before any other thread runs.
-  for (int thread = 0; thread < 3; ++thread) {
+  for (int thread = 0; thread < 2; ++thread) {
     clock->Enter();  // before the first of them waits, and lets time pass
   }
   std::thread haptic([&] {
@@ -209,7 +196,6 @@ ExecutionReport RunRealtime(const Execution& given) {
     }
   });
   {
-    const ClockPlace place(clock);
     const PhysicsPriority priority;  // after the threads began, which would inherit it
     Pacer pacer(Simulation::kPhysicsStepNs, clock);
     while (!execution.is_done() && t_ns.load(std::memory_order_relaxed) < execution.limit_ns) {

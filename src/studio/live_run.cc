@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/clock_place.h"
 #include "studio/next_step.h"
 
 namespace hvas::studio {
@@ -121,7 +122,11 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
     };
   }
   observed_ = {simulation_->physics().parts(), start.next_step};
-  thread_ = std::thread([this, options] { Run(options); });
+  clock_->Enter();  // here: its time may not pass before the thread has begun
+  thread_ = std::thread([this, options] {
+    const ClockPlace place(clock_);
+    Run(options);
+  });
 }
 
 LiveRun::~LiveRun() {

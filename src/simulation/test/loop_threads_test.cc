@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/clock_place.h"
 #include "base/loop_clock.h"
 #include "simulation/test/session.h"
 #include "simulation/test/small_products.h"
@@ -21,7 +22,9 @@ constexpr double kLimit = 60;  // Of the session [s]: more than the peg needs.
 ExecutionReport RunSteered(Execution execution) {
   SteeredClock clock;
   execution.clock = &clock;
+  clock.Enter();
   const ClockDriver driver(&clock);
+  const ClockPlace place(&clock);
   return RunRealtime(execution);
 }
 
@@ -98,7 +101,11 @@ TEST(LoopThreadsTest, RunEndsWhileItsTimeStandsStill) {
   std::atomic<bool> is_over{false};
   execution.is_done = [&is_over] { return is_over.load(); };
   execution.clock = &clock;
-  std::thread run([&execution] { (void)RunRealtime(execution); });
+  clock.Enter();
+  std::thread run([&execution, &clock] {
+    const ClockPlace place(&clock);
+    (void)RunRealtime(execution);
+  });
   is_over = true;
   clock.WakeAll();
   run.join();
