@@ -23,11 +23,18 @@ const kSecrets = /H7\/|\b(A1|B1|B2)\b|Clearance|Interference|µm|seed/;
 
 shareBrowser();
 
+/** The experimenter without a page, once the session can begin. */
+async function joinAsExperimenter(study) {
+  const desk = study.join(study.operator);
+  await desk.until((state) => state.is_open);
+  return desk;
+}
+
 /** The participant's page, and the experimenter without one. */
 async function openAsParticipant(study, options) {
   const { page: person, complaints } = await openQuietPage(browser, study.participant, options);
   await person.getByTestId("page-waiting").waitFor();
-  return { person, complaints, desk: study.join(study.operator) };
+  return { person, complaints, desk: await joinAsExperimenter(study) };
 }
 
 /** The experimenter's page, and the participant without one. */
@@ -255,7 +262,7 @@ describe("a participant", () => {
 
 describe("a viewer", () => {
   it("sees what the participant sees, and can do nothing", withStudy(async (study) => {
-    const [desk, person] = [study.join(study.operator), study.join(study.participant)];
+    const [desk, person] = [await joinAsExperimenter(study), study.join(study.participant)];
     await desk.do("begin");
     const { page } = await openQuietPage(browser, study.viewer);
     await page.getByTestId("page-consent").waitFor();

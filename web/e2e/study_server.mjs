@@ -25,11 +25,11 @@ conditions:
 training: {minutes: 10, condition: B1}
 blocks:
   - {id: timed, conditions: [B1], order: given}
-  - {id: blind, conditions: [B1, B2], identification: true, question: {en: Which fit was it?, de: Welche Passung war es?}}
+  - {id: blind, conditions: [B1, B2], identification: true, question: {en: "Which fit was it?", de: "Welche Passung war es?"}}
   - {id: picked, conditions: [A1], order: given}
 questions:
-  - {id: steady, kind: scale, asked: at_end, text: {en: How steady did the force feel?, de: Wie stetig fühlte sich die Kraft an?}, low: 1, high: 10}
-  - {id: remarks, kind: text, asked: at_end, text: {en: Is there anything else?, de: Noch etwas?}, longest: 200}
+  - {id: steady, kind: scale, asked: at_end, text: {en: "How steady did the force feel?", de: "Wie stetig fühlte sich die Kraft an?"}, low: 1, high: 10}
+  - {id: remarks, kind: text, asked: at_end, text: {en: "Is there anything else?", de: "Noch etwas?"}, longest: 200}
 hidden: [condition]
 `;
 
