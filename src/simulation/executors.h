@@ -147,7 +147,8 @@ class Lockstep {
 ExecutionReport RunLockstep(const Execution& execution);
 
 /** Three threads at the rates of X4: haptic 1 kHz and more with real-time priority where the system
- grants it, physics 100 Hz, publishing 30 Hz; by the machine's clock, or by a steered one. */
+ grants it, physics 100 Hz, publishing 30 Hz; by the machine's clock, or by a steered one.
+ @pre the calling thread has entered a steered clock (LoopClock::Enter). */
 ExecutionReport RunRealtime(const Execution& execution);
 
 }  // namespace hvas::simulation

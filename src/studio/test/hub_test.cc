@@ -554,7 +554,7 @@ TEST_F(HubTest, AtMostSoManyFrameMessagesWaitToBeSeen) {
   ASSERT_EQ(link.frames.size(), Hub::kMaxUnseen + 1);  // at once
   const protocol::Header newest = HeaderOf(link.frames[Hub::kMaxUnseen]);
   EXPECT_EQ(newest.t_ns, bench_.live().frame().clock_ns);  // not what was missed
-  EXPECT_LT(newest.count, 2u);  // the block stands in its fixture
+  EXPECT_LT(newest.count, 2u);                             // the block stands in its fixture
 }
 
 TEST_F(HubTest, CreditForWhatWasNeverSentIsWorthNothing) {
