@@ -26,6 +26,7 @@
 #include "app/shipped_files.h"
 #include "app/study/study_protocol.h"
 #include "assembly/prepare_model.h"
+#include "base/loop_clock.h"
 #include "base/scratch_folder.h"
 #include "base/user_folder.h"
 #include "cad/input_file.h"
@@ -33,6 +34,7 @@
 #include "studio/recent_files.h"
 #include "studio/saved_work.h"
 #include "studio/server.h"
+#include "studio/session_pace.h"
 #include "studio/state_folder.h"
 #include "studio/study_desk.h"
 #include "studio/workbench.h"
@@ -54,6 +56,7 @@ struct StudioOptions {
   bool has_workshop{false};      ///< The shipped tools and fixtures are on the table.
   bool is_fresh{false};          ///< Nothing of the work before is gone on with.
   bool new_links{false};         ///< Nor its links.
+  std::string clock{"machine"};  ///< "machine", or "steps" for a steered one.
   std::string study;             ///< A protocol; empty: none.
   std::string participant;       ///< "P01"
   std::filesystem::path folder;  ///< Of the study; empty: the protocol's id.
@@ -299,10 +302,11 @@ std::filesystem::path FindRecentFile(const std::filesystem::path& scratch) {
   return (state ? *state : scratch) / "studio" / "recent.json";
 }
 
-/** Starts the server, and serves until the program is to end. */
+/** Starts the server, and serves until the program is to end.
+ @param steps  The clock of the session, which goes on by steps of its work; null: the machine's. */
 Result<void> Serve(const StudioOptions& options, const studio::StateFolder& folder,
                    const std::optional<studio::SavedWork>& work,
-                   const std::filesystem::path& recent, EndWatch* end,
+                   const std::filesystem::path& recent, SteeredClock* steps, EndWatch* end,
                    studio::Workbench* workbench) {
   studio::ServerOptions served;
   served.port = options.port;
@@ -331,6 +335,10 @@ Result<void> Serve(const StudioOptions& options, const studio::StateFolder& fold
     (*desk)->Start();
   }
   PrintWelcome(server, work, about_certificate);
+  std::optional<ClockDriver> driver;
+  if (steps != nullptr) {
+    driver.emplace(steps, studio::SessionPace(&workbench->live()));
+  }
   OpenWork(options, work, recent, workbench);
   if (options.opens_browser) {
     OpenBrowser(
@@ -366,10 +374,14 @@ int RunStudio(const StudioOptions& options) {
   const auto work = FindWork(options, *folder);
   folder->RemoveUploadsBut(work ? work->file : "");
   studio::WorkbenchOptions bench = MakeWorkbench(options);
+  std::optional<SteeredClock> steps;
+  if (options.clock == "steps") {
+    bench.clock = &steps.emplace();
+  }
   bench.work_file = options.study.empty() ? folder->work_file() : std::filesystem::path();
   studio::Workbench workbench(bench);
-  const auto served =
-      Serve(options, *folder, work, FindRecentFile(scratch->path()), &end, &workbench);
+  const auto served = Serve(options, *folder, work, FindRecentFile(scratch->path()),
+                            steps ? &*steps : nullptr, &end, &workbench);
   return served ? 0 : ReportFailure(served.error());
 }
 
@@ -450,6 +462,14 @@ void AddStudio(CLI::App* app, int* status) {
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Rate of the haptic loop [Hz]")
       ->check(CLI::Range(1000.0, 8000.0))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--clock", options->clock,
+          "Clock of the session: machine, or steps. By steps, time waits for the loops and "
+          "for the browser that holds a part: a busy machine is slow, and nothing is late. "
+          "For tests; real devices need the machine's clock")
+      ->check(CLI::IsMember({"machine", "steps"}))
       ->capture_default_str();
   AddGuidanceOptions(command, &options->guidance);
   command->add_flag("--workshop", options->has_workshop,

@@ -65,7 +65,7 @@ Result<OpenedDevice> OpenAnyDevice(const std::string& address, bool is_live) {
   }
   if (!is_live && IsDriver(std::string_view(address).substr(0, address.find(':')))) {
     return Fail(ErrorCode::kInvalid, "a real device needs the real-time loop", address,
-                "add --realtime");
+                "add --realtime, or leave out --clock");
   }
   auto device = OpenDevice(address, Surroundings());
   if (!device) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "base/clock_place.h"
 #include "simulation/haptic_loop.h"
 
 namespace hvas::simulation {
@@ -156,18 +157,25 @@ ExecutionReport RunRealtime(const Execution& given) {
   ExecutionReport report;
   Execution execution = given;
   execution.is_live = true;
+  LoopClock* clock = execution.clock;
+  execution.sheds_load = execution.sheds_load && !clock->is_steered();
   std::atomic<bool> is_stopping{false};
+  const std::function<bool()> has_stopped = [&is_stopping] { return is_stopping.load(); };
   std::atomic<std::int64_t> t_ns{0};
   const std::int64_t start_ns = MonotonicNs();
   StepPhysics(execution);  // Puts the base in its fixture: before any other thread runs.
+  for (int thread = 0; thread < 2; ++thread) {
+    clock->Enter();  // before the first of them waits, and lets time pass
+  }
   std::thread haptic([&] {
+    const ClockPlace place(clock);
     report.grant = RequestRealtime();
     HapticLoop loop(execution, &report);
     const std::int64_t period_ns = CalcPeriod(*execution.simulation);
     StatusTeller status(execution.status, report.grant, period_ns);
-    Pacer pacer(period_ns);
+    Pacer pacer(period_ns, clock);
     while (!is_stopping.load(std::memory_order_relaxed)) {
-      const std::int64_t late_ns = pacer.Wait();
+      const std::int64_t late_ns = pacer.Wait(has_stopped);
       report.wake_up.Add(late_ns);
       report.late_wake_ups += late_ns > period_ns ? 1 : 0;
       status.Tell(report, *execution.simulation, late_ns, loop.Tick(late_ns), loop.effort_level());
@@ -176,9 +184,10 @@ ExecutionReport RunRealtime(const Execution& given) {
     report.missed_periods = pacer.missed();
   });
   std::thread publish([&] {
-    Pacer pacer(execution.frame_ns);
+    const ClockPlace place(clock);
+    Pacer pacer(execution.frame_ns, clock);
     while (!is_stopping.load(std::memory_order_relaxed)) {
-      (void)pacer.Wait();
+      (void)pacer.Wait(has_stopped);
       const Frame& frame = execution.simulation->Publish();
       report.frame_age.Add(t_ns.load(std::memory_order_relaxed) - frame.t_ns);
       if (execution.on_frame) {
@@ -188,13 +197,14 @@ ExecutionReport RunRealtime(const Execution& given) {
   });
   {
     const PhysicsPriority priority;  // after the threads began, which would inherit it
-    Pacer pacer(Simulation::kPhysicsStepNs);
+    Pacer pacer(Simulation::kPhysicsStepNs, clock);
     while (!execution.is_done() && t_ns.load(std::memory_order_relaxed) < execution.limit_ns) {
-      (void)pacer.Wait();
+      (void)pacer.Wait(execution.is_done);
       StepPhysics(execution);
     }
+    is_stopping = true;
+    clock->WakeAll();
   }
-  is_stopping = true;
   haptic.join();
   publish.join();
   ReleaseRealtime();

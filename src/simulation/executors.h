@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/histogram.h"
+#include "base/loop_clock.h"
 #include "base/triple_buffer.h"
 #include "simulation/flight_recorder.h"
 #include "simulation/load_shedder.h"
@@ -109,8 +110,11 @@ struct Execution {
   /** Lockstep only: the physics loop misses its step at a session time in nanoseconds, as a thread
    that the system keeps waiting; null: never. */
   std::function<bool(std::int64_t)> is_physics_late;
-  bool sheds_load{true};  ///< Realtime only.
-  bool is_live{false};    ///< Set by the executor.
+  bool sheds_load{true};  ///< Realtime only; not by a steered clock, by which nothing is late.
+  /** Realtime only: clock by which the loops wait. A steered one ends a wait where `is_done` holds
+   after LoopClock::WakeAll(); then `is_done` may be called by any thread that calls that. */
+  LoopClock* clock{&MachineClock()};
+  bool is_live{false};  ///< Set by the executor.
 };
 
 /** Virtual time on the calling thread, one tick at a time, for a caller who does something between
@@ -143,7 +147,8 @@ class Lockstep {
 ExecutionReport RunLockstep(const Execution& execution);
 
 /** Three threads at the rates of X4: haptic 1 kHz and more with real-time priority where the system
- grants it, physics 100 Hz, publishing 30 Hz. */
+ grants it, physics 100 Hz, publishing 30 Hz; by the machine's clock, or by a steered one.
+ @pre the calling thread has entered a steered clock (LoopClock::Enter). */
 ExecutionReport RunRealtime(const Execution& execution);
 
 }  // namespace hvas::simulation

@@ -3,16 +3,13 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
-#include <time.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 
 #include <fmt/format.h>
-
-#include "base/clock.h"
 
 namespace hvas::simulation {
 namespace {
@@ -83,14 +80,18 @@ void ReleaseRealtime() {
   ::munlockall();
 }
 
-Pacer::Pacer(std::int64_t period_ns) noexcept : period_ns_(period_ns), next_ns_(MonotonicNs()) {}
+Pacer::Pacer(std::int64_t period_ns, LoopClock* clock) noexcept
+    : clock_(clock), period_ns_(period_ns), next_ns_(clock->NowNs()) {}
 
 std::int64_t Pacer::Wait() noexcept {
+  static const std::function<bool()> kNever = [] { return false; };
+  return Wait(kNever);
+}
+
+std::int64_t Pacer::Wait(const std::function<bool()>& is_over) noexcept {
   next_ns_ += period_ns_;
-  const timespec deadline{next_ns_ / kNsPerSecond, next_ns_ % kNsPerSecond};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
-  }
-  const std::int64_t late_ns = MonotonicNs() - next_ns_;
+  clock_->WaitUntil(next_ns_, is_over);
+  const std::int64_t late_ns = std::max<std::int64_t>(0, clock_->NowNs() - next_ns_);
   if (late_ns > period_ns_) {
     const std::int64_t periods = late_ns / period_ns_;
     missed_ += static_cast<std::uint64_t>(periods);

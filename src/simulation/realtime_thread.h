@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+
+#include "base/loop_clock.h"
 
 namespace hvas::simulation {
 
@@ -43,19 +46,21 @@ void ReleaseRealtime();
 [[nodiscard]] int FirstCoreOf(const std::string& list);
 
 /** Wakes a thread at a fixed rate. Deadlines are absolute, so there is no drift; after a stall
- those that were missed are passed over, so there is no burst. RT-safe. */
+ those that were missed are passed over, so there is no burst. RT-safe with the machine's clock. */
 class Pacer {
  public:
-  explicit Pacer(std::int64_t period_ns) noexcept;
+  explicit Pacer(std::int64_t period_ns, LoopClock* clock = &MachineClock()) noexcept;
 
-  /** Sleeps until the next deadline.
+  /** Sleeps until the next deadline, or until `is_over` holds (LoopClock::WaitUntil).
    @returns  How late it woke up [ns]. */
+  std::int64_t Wait(const std::function<bool()>& is_over) noexcept;
   std::int64_t Wait() noexcept;
 
   /** Periods passed over so far. */
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
 
  private:
+  LoopClock* clock_;
   std::int64_t period_ns_;
   std::int64_t next_ns_;
   std::uint64_t missed_{0};

@@ -320,7 +320,7 @@ Result<Json> Hub::DoStudy(const Caller& caller, const protocol::StudyCommand& /*
     return Fail(ErrorCode::kInvalid, "this studio does not run a study", "study",
                 "start the studio with --study and --participant");
   }
-  auto result = desk_->Do(caller.role, caller.command, MonotonicNs());
+  auto result = desk_->Do(caller.role, caller.command, workbench_->live().clock().NowNs());
   if (result && TextOr(caller.command, "action", "") != "state") {
     BroadcastStudyState();
   }

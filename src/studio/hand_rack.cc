@@ -106,7 +106,8 @@ void HandRack::SetCount(std::size_t count) {
   slots_.resize(count);
 }
 
-Result<void> HandRack::Use(std::size_t hand, const std::string& address, double scale) {
+Result<void> HandRack::Use(std::size_t hand, const std::string& address, double scale,
+                           bool is_live) {
   Slot slot;
   slot.address = address;
   {
@@ -126,7 +127,7 @@ Result<void> HandRack::Use(std::size_t hand, const std::string& address, double 
     }
   }
   if (address != kPointer && slot.setup.device == nullptr) {
-    auto opened = device::OpenAnyDevice(address, true);
+    auto opened = device::OpenAnyDevice(address, is_live);
     if (!opened) {
       return Unexpected(opened.error());
     }

@@ -27,8 +27,10 @@ class HandRack {
   /** Assigns a device to a hand in place of its present one; a device that it has already stays
    open.
    @param scale  As in simulation::RenderOptions.
+   @param is_live  As in device::OpenAnyDevice; the same in every call.
    Errors: kInvalid where there is no such hand or another hand has the device; the driver's. */
-  [[nodiscard]] Result<void> Use(std::size_t hand, const std::string& address, double scale);
+  [[nodiscard]] Result<void> Use(std::size_t hand, const std::string& address, double scale,
+                                 bool is_live);
 
   /** Setups, indexed by hand. */
   [[nodiscard]] std::vector<HandSetup> setups() const;

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "base/clock.h"
 #include "studio/event_json.h"
 #include "studio/frames.h"
 #include "studio/json_fields.h"
@@ -62,7 +61,7 @@ Result<std::string> Hub::Join(Role role, ClientLink* link) {
     SendTo(client, event, event.dump());
   }
   if (desk_ != nullptr) {
-    link->SendText(Print(desk_->MakeEvent(role, MonotonicNs())));
+    link->SendText(Print(desk_->MakeEvent(role, workbench_->live().clock().NowNs())));
   }
   BroadcastRoles();
   return id;
@@ -110,7 +109,8 @@ void Hub::Broadcast(Json event) {
     }
     return;
   }
-  const bool has_news = desk_ != nullptr && desk_->OnBenchEvent(event, MonotonicNs());
+  const std::int64_t now_ns = workbench_->live().clock().NowNs();
+  const bool has_news = desk_ != nullptr && desk_->OnBenchEvent(event, now_ns);
   if (!event.value("event", "").starts_with("trial_")) {  // events for the study desk only
     const std::string text = Print(event);
     for (auto& [id, client] : clients_) {
@@ -143,7 +143,7 @@ void Hub::SendTo(const Client& client, const Json& event, const std::string& tex
 }
 
 void Hub::BroadcastStudyState() {
-  const std::int64_t now_ns = MonotonicNs();
+  const std::int64_t now_ns = workbench_->live().clock().NowNs();
   for (auto& [id, client] : clients_) {
     client.link->SendText(Print(desk_->MakeEvent(client.role, now_ns)));
   }
@@ -348,7 +348,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
 }
 
 void Hub::PublishStatus() {
-  if (desk_ != nullptr && desk_->Poll(MonotonicNs())) {
+  if (desk_ != nullptr && desk_->Poll(workbench_->live().clock().NowNs())) {
     BroadcastStudyState();
   }
   if (const auto status = workbench_->live().TakeStatus()) {

@@ -48,7 +48,7 @@ haptics::TickOptions MakePointerOptions(double rate_hz) {
 // real device.
 LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
                    const simulation::Model& model)
-    : device_(setup.device), pointer_(purpose.X_WH) {
+    : device_(setup.device), pointer_(purpose.X_WH, *purpose.clock) {
   const bool is_emulated = device_ != nullptr && device_->emulator != nullptr;
   const bool goes_through_device = is_emulated || (device_ != nullptr && !purpose.has_person);
   tick_options_ = MakeOptions(setup, purpose, goes_through_device, model);
@@ -68,8 +68,9 @@ LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
     if (person_ != nullptr) {
       holder = person_.get();
     }
+    const bool is_live = !purpose.clock->is_steered();
     at_device_ = std::make_unique<simulation::PersonAtDevice>(holder, device_->emulator.get(),
-                                                              device_->device.get(), true);
+                                                              device_->device.get(), is_live);
   } else if (goes_through_device) {
     at_device_ = std::make_unique<simulation::DeviceOperator>(device_->device.get());
   }

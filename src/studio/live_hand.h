@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "base/loop_clock.h"
 #include "device/opened_device.h"
 #include "haptics/paper_guidance.h"
 #include "simulation/device_session.h"
@@ -24,8 +25,9 @@ struct HandPurpose {
   std::uint64_t seed{1};
   spatial::Pose X_WH;  ///< Initial pose of the hand.
   double rate_hz{1000};
-  const LiveTrial* trial{nullptr};  ///< Trial of a study; may be null.
-  haptics::PaperGuidance guidance;  ///< Guidance outside trials, which have their own.
+  const LiveTrial* trial{nullptr};    ///< Trial of a study; may be null.
+  haptics::PaperGuidance guidance;    ///< Guidance outside trials, which have their own.
+  LoopClock* clock{&MachineClock()};  ///< Clock of the session.
 };
 
 /** Makes the tick options of a hand that a remote client moves: those of the simulated device, with

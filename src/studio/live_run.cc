@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/clock_place.h"
 #include "studio/next_step.h"
 
 namespace hvas::studio {
@@ -24,7 +25,8 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
                               simulation::StartOfHand(model),
                               options.rate_hz,
                               options.trial.get(),
-                              options.guidance};
+                              options.guidance,
+                              options.clock};
     hands.push_back(std::make_unique<LiveHand>(setup, purpose, model));
   }
   return hands;
@@ -80,7 +82,8 @@ LiveState MakeStart(const simulation::Model& model) {
 
 LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
                  const LiveOptions& options, LiveListeners listeners)
-    : listeners_(std::move(listeners)),
+    : clock_(options.clock),
+      listeners_(std::move(listeners)),
       recording_(options.recording),
       trial_(options.trial),
       hands_(MakeHands(options, *model)),
@@ -119,11 +122,16 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
     };
   }
   observed_ = {simulation_->physics().parts(), start.next_step};
-  thread_ = std::thread([this, options] { Run(options); });
+  clock_->Enter();  // here: its time may not pass before the thread has begun
+  thread_ = std::thread([this, options] {
+    const ClockPlace place(clock_);
+    Run(options);
+  });
 }
 
 LiveRun::~LiveRun() {
   is_stopping_ = true;
+  clock_->WakeAll();
   thread_.join();
 }
 
@@ -133,6 +141,7 @@ void LiveRun::Run(const LiveOptions& options) {
   execution.advance = [this] { Advance(); };
   execution.is_done = [this] { return is_stopping_.load(); };
   execution.flight = &flight;
+  execution.clock = clock_;
   execution.frame_ns = kFrameNs;
   execution.status = &status_;
   execution.on_frame = [this](const simulation::Frame& frame) {
@@ -147,7 +156,7 @@ void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, hand, step, X_WH] {
     simulation_->physics().Prepare(step, hand);
-    hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
+    MovePointer(hand, X_WH, true);
   });
 }
 
@@ -155,28 +164,42 @@ void LiveRun::Help(std::size_t hand, std::size_t other, const spatial::Pose& X_W
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, hand, other, X_WH] {
     simulation_->physics().PrepareHelp(other, hand);
-    hands_[hand]->pointer().Move({MonotonicNs(), X_WH, true});
+    MovePointer(hand, X_WH, true);
   });
 }
 
 void LiveRun::Move(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
   const std::lock_guard lock(mutex_);
-  const PointerInput input{MonotonicNs(), X_WH, is_gripping};
   if (tasks_.empty()) {
-    hands_[hand]->pointer().Move(input);
+    MovePointer(hand, X_WH, is_gripping);
     return;
   }
   // The hand closes only after the take is prepared; it would take another part, or none.
-  tasks_.emplace_back([this, hand, input] { hands_[hand]->pointer().Move(input); });
+  tasks_.emplace_back([this, hand, X_WH, is_gripping] { MovePointer(hand, X_WH, is_gripping); });
+}
+
+void LiveRun::MovePointer(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping) {
+  const std::int64_t now_ns = clock_->NowNs();
+  moved_ns_[hand] = now_ns;
+  hands_[hand]->pointer().Move({now_ns, X_WH, is_gripping});
+}
+
+std::optional<std::int64_t> LiveRun::FindOldestInput() const {
+  std::optional<std::int64_t> oldest;
+  for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
+    if (hands_[hand]->follows_pointer() && is_holding(hand)) {
+      oldest = std::min(oldest.value_or(moved_ns_[hand]), moved_ns_[hand].load());
+    }
+  }
+  return oldest;
 }
 
 void LiveRun::HandOver(std::size_t from, std::size_t to, product::OccurrenceId id) {
   constexpr std::int64_t kPatienceNs = 500'000'000;  // To let go takes two physics steps: a choice.
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, from, to, id] {
-    const std::int64_t now_ns = MonotonicNs();
-    hands_[from]->pointer().Move({now_ns, spatial::Pose(), false});
-    passing_ = Passing{to, id, now_ns + kPatienceNs};
+    MovePointer(from, spatial::Pose(), false);
+    passing_ = Passing{to, id, clock_->NowNs() + kPatienceNs};
   });
 }
 
@@ -185,8 +208,7 @@ void LiveRun::Catch() {
     return;
   }
   const simulation::PartState& part = observed_.parts[passing_->id.index()];
-  const std::int64_t now_ns = MonotonicNs();
-  if (part.placement == Placement::kHeld && now_ns < passing_->give_up_ns) {
+  if (part.placement == Placement::kHeld && clock_->NowNs() < passing_->give_up_ns) {
     return;
   }
   if (part.placement == Placement::kLoose) {
@@ -194,7 +216,7 @@ void LiveRun::Catch() {
         FindStep(model(), observed_, passing_->id, simulation::TakeExtent::kWhole);
     const Vec3 p_BoBcm_B = simulation::CombineMass(model(), step).p_BoBcm_B;
     simulation_->physics().Prepare(step, passing_->to);
-    hands_[passing_->to]->pointer().Move({now_ns, spatial::Pose(part.X_WB * p_BoBcm_B), true});
+    MovePointer(passing_->to, spatial::Pose(part.X_WB * p_BoBcm_B), true);
   }
   passing_.reset();
 }

@@ -48,14 +48,17 @@ struct LiveOptions {
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
   haptics::PaperGuidance guidance;  ///< See HandPurpose.
   bool forces_off{false};           ///< No force from the first tick on.
+  /** Clock of the loops, and of the age of inputs; devices have been opened for it. */
+  LoopClock* clock{&MachineClock()};
   std::shared_ptr<Recording> recording;  ///< Receives all events; may be null.
   std::shared_ptr<LiveTrial> trial;      ///< Trial of a study; may be null.
   /** Plan that the simulated person carries out instead of the assembly; may be null. */
   std::shared_ptr<const simulation::DisassemblyPlan> disassembly;
 };
 
-/** One section of a live assembly: a simulation of a model that runs in real time until this object
- is destroyed. Another model, another operator and undo each begin a new run from a given state. */
+/** One section of a live assembly: a simulation of a model that runs by a clock, the machine's or a
+ steered one, until this object is destroyed. Another model, another operator and undo each begin a
+ new run from a given state. */
 class LiveRun final : private simulation::Sink {
  public:
   LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState& start,
@@ -85,6 +88,10 @@ class LiveRun final : private simulation::Sink {
   /** State before the most recent take. */
   [[nodiscard]] LiveState state_before_take() const;
 
+  /** Time of the newest input [ns] of the hand, among those that hold a part by the pointer, whose
+   input is oldest; none where none does. Any thread may call it. */
+  [[nodiscard]] std::optional<std::int64_t> FindOldestInput() const;
+
   [[nodiscard]] std::size_t hand_count() const { return hands_.size(); }
 
   [[nodiscard]] const LiveHand& hand(std::size_t i) const { return *hands_[i]; }
@@ -105,9 +112,10 @@ class LiveRun final : private simulation::Sink {
   struct Passing {
     std::size_t to;
     product::OccurrenceId id;
-    std::int64_t give_up_ns;  ///< MonotonicNs() after which the part is nobody's.
+    std::int64_t give_up_ns;  ///< Time by the session's clock after which the part is nobody's.
   };
 
+  void MovePointer(std::size_t hand, const spatial::Pose& X_WH, bool is_gripping);
   void Advance();
   void Observe();
   /** Closes the second hand on a part as soon as the first one has let go. */
@@ -117,6 +125,7 @@ class LiveRun final : private simulation::Sink {
   [[nodiscard]] std::size_t FindNextStep(const std::vector<simulation::PartState>& parts) const;
   void Run(const LiveOptions& options);
 
+  LoopClock* const clock_;
   LiveListeners listeners_;
   std::shared_ptr<Recording> recording_;
   std::shared_ptr<LiveTrial> trial_;
@@ -127,6 +136,8 @@ class LiveRun final : private simulation::Sink {
   std::optional<simulation::DisassemblyRun> disassembly_;  ///< Takes the place of assembly_.
   TripleBuffer<simulation::LoopStatus> status_;
   std::array<std::atomic<double>, haptics::kMaxHands> peak_felt_{};
+  /** Time of the newest input of each hand, by the session's clock [ns]. */
+  std::array<std::atomic<std::int64_t>, haptics::kMaxHands> moved_ns_{};
   /** MonotonicNs() at session time 0, by the newest tick: periods that the loop missed are no
    session time, so that it moves. */
   std::atomic<std::int64_t> begin_ns_;

@@ -80,6 +80,7 @@ void LiveScene::Show(const std::shared_ptr<const OpenScene>& scene, const LiveSt
   live.seed = options_.seed;
   live.rate_hz = options_.rate_hz;
   live.guidance = options_.guidance;
+  live.clock = options_.clock;
   live.forces_off = forces_off_;
   for (SceneObserver* observer : observers_) {
     observer->ConfigureRun(*scene, &live);
@@ -285,6 +286,11 @@ Result<void> LiveScene::CheckOpen() const {
 bool LiveScene::is_holding() const {
   const std::lock_guard lock(mutex_);
   return run_ != nullptr && IsHolding(*run_);
+}
+
+std::optional<std::int64_t> LiveScene::FindOldestInput() const {
+  const std::lock_guard lock(mutex_);
+  return run_ != nullptr ? run_->FindOldestInput() : std::nullopt;
 }
 
 Result<void> LiveScene::CheckIdle() const {

@@ -31,6 +31,7 @@ class LiveScene {
     std::uint64_t seed{1};            ///< Any number: the simulated person's hand follows from it.
     double rate_hz{1000};             ///< X4 asks for 1 kHz.
     haptics::PaperGuidance guidance;  ///< See HandPurpose.
+    LoopClock* clock{&MachineClock()};  ///< Clock of all runs.
   };
 
   LiveScene(const Options& options, EventBus* events) : options_(options), events_(events) {}
@@ -84,6 +85,11 @@ class LiveScene {
   [[nodiscard]] Json DescribeStep() const;
 
   [[nodiscard]] bool is_holding() const;
+
+  /** Finds what LiveRun::FindOldestInput() finds; none between two runs. */
+  [[nodiscard]] std::optional<std::int64_t> FindOldestInput() const;
+
+  [[nodiscard]] LoopClock& clock() const { return *options_.clock; }
 
   /** Checks that nobody works on the scene, and that all its parts are ready. Errors: without a
    scene, while parts are prepared, while the simulated person works, or while a hand holds a part.

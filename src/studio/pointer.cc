@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/clock.h"
-
 namespace hvas::studio {
 namespace {
 
@@ -30,8 +28,8 @@ spatial::Twist Approach(const spatial::Pose& goal, double dt, spatial::Pose* X) 
 
 }  // namespace
 
-PointerOperator::PointerOperator(const spatial::Pose& X_WH)
-    : inputs_(PointerInput{0, X_WH, false}), X_WH_(X_WH), X_WS_(X_WH) {}
+PointerOperator::PointerOperator(const spatial::Pose& X_WH, const Clock& clock)
+    : clock_(clock), inputs_(PointerInput{0, X_WH, false}), X_WH_(X_WH), X_WS_(X_WH) {}
 
 void PointerOperator::Follow(const spatial::Pose& X_WH, double dt) noexcept {
   (void)Approach(X_WH, dt, &X_WS_);
@@ -43,7 +41,7 @@ const PointerInput& PointerOperator::ReadInput(bool sees_part, std::int64_t* age
   const PointerInput& wanted = inputs_.value();
   // The timeout matters only while a part is held.
   *age_ns =
-      sees_part && wanted.t_ns > 0 ? std::max<std::int64_t>(0, MonotonicNs() - wanted.t_ns) : 0;
+      sees_part && wanted.t_ns > 0 ? std::max<std::int64_t>(0, clock_.NowNs() - wanted.t_ns) : 0;
   return wanted;
 }
 

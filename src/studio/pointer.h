@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "base/clock.h"
 #include "base/triple_buffer.h"
 #include "simulation/simulated_person.h"
 
@@ -10,7 +11,7 @@ namespace hvas::studio {
 
 /** A client's target for the hand. */
 struct PointerInput {
-  std::int64_t t_ns{0};  ///< MonotonicNs() at its arrival.
+  std::int64_t t_ns{0};  ///< Time of its arrival, by the clock of the session.
   spatial::Pose X_WH;
   bool is_gripping{false};
 };
@@ -26,7 +27,8 @@ class PointerOperator final : public simulation::Operator, public simulation::De
   /** Age at which the input times out [ns]. */
   static constexpr std::int64_t kInputTimeoutNs = 250'000'000;
 
-  explicit PointerOperator(const spatial::Pose& X_WH);
+  /** @param clock  By which the age of an input is told; outlives this. */
+  PointerOperator(const spatial::Pose& X_WH, const Clock& clock);
 
   /** Sets the target; may be called at any time, and the newest one counts. */
   void Move(const PointerInput& input) noexcept { inputs_.Write(input); }
@@ -45,6 +47,7 @@ class PointerOperator final : public simulation::Operator, public simulation::De
   const PointerInput& ReadInput(bool sees_part, std::int64_t* age_ns) noexcept;
   void Follow(const spatial::Pose& X_WH, double dt) noexcept;
 
+  const Clock& clock_;
   simulation::PersonOptions options_;
   TripleBuffer<PointerInput> inputs_;
   spatial::Pose X_WH_;

@@ -38,7 +38,8 @@ class StudyDesk {
   /** Opens the product on the workbench; the session can begin once it is open. */
   void Start();
 
-  /** Executes the command "study". @param now_ns  MonotonicNs(). @returns the reply. */
+  /** Executes the command "study". @param now_ns  By LiveScene::clock(), here and
+   in what follows. @returns the reply. */
   [[nodiscard]] Result<Json> Do(Role role, const Json& command, std::int64_t now_ns);
 
   /** Handles an event of the workbench. @returns whether the state has changed. */

@@ -29,6 +29,9 @@ struct WorkbenchOptions {
   std::filesystem::path work_file;  ///< File that SavedWork is saved to after changes; empty: none.
   double rate_hz{1000};             ///< X4 asks for 1 kHz.
   haptics::PaperGuidance guidance;  ///< Guidance of all hands outside the trials of a study.
+  /** Clock of the loops, of the age of inputs, and of a study's training; outlives the workbench.
+   */
+  LoopClock* clock{&MachineClock()};
 };
 
 /** Connects the parts of the workbench, each of which has its own state and its own mutex, and

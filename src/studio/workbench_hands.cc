@@ -195,7 +195,8 @@ Result<void> WorkbenchHands::UseDevice(std::size_t hand, const std::string& addr
   if (possible) {
     worker_->Post([this, hand, address, scale](const std::stop_token& /*stop*/) {
       is_changing_ = true;
-      if (const auto used = rack_.Use(hand, address, scale); !used) {
+      const bool is_live = !live_->clock().is_steered();
+      if (const auto used = rack_.Use(hand, address, scale, is_live); !used) {
         is_changing_ = false;
         events_->Publish({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
         return;

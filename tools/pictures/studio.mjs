@@ -114,7 +114,7 @@ async function encodeChanges({ png, quality, block }) {
 /** Starts a studio with a product, and ends it with what is done there. */
 async function withStudio(product, run) {
   const folder = makeFolder();
-  const studio = await startStudio([join(kProducts, product), "--fresh", "--recordings", folder, "-q"], { home: folder });
+  const studio = await startStudio([join(kProducts, product), "--fresh", "--recordings", folder, "-q"], { home: folder, clock: "machine" });
   const browser = await launchBrowser();
   try {
     await run(studio, browser);

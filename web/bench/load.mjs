@@ -116,8 +116,8 @@ async function drawWith(browser, studio, hand) {
 }
 
 async function measure(file) {
-  const studio = await startStudio([file]);
-  const other = await startStudio([file]);
+  const studio = await startStudio([file], { clock: "machine" });
+  const other = await startStudio([file], { clock: "machine" });
   const browser = await launchBrowser();
   const figures = { alone: [], beside: [], drawing: [], roundTripMs: [], samples: [] };
   try {

@@ -106,7 +106,7 @@ async function main() {
   const link = spawn("python3", ["bench/lossy_link.py", kNamespace, "--delay-ms", delayMs, "--loss", loss], { stdio: ["pipe", "pipe", "inherit"] });
   await once(link.stdout, "data");
   process.env["NODE_TLS_REJECT_UNAUTHORIZED"] = "0";
-  const studio = await startStudio([file, "--listen", kAddress, "--fresh"]);
+  const studio = await startStudio([file, "--listen", kAddress, "--fresh"], { clock: "machine" });
   try {
     const host = await signIn(studio.operator);
     const viewer = await signIn(studio.viewer);

@@ -12,7 +12,7 @@ const kPictures = 3;
 
 /** Opened anew each time, with nothing in the browser's cache; the program has opened the product. */
 async function timeFirstPicture(browser, file) {
-  const studio = await startStudio([file]);
+  const studio = await startStudio([file], { clock: "machine" });
   const times = [];
   try {
     const { page } = await openPage(browser, studio.operator);
@@ -33,7 +33,7 @@ async function timeFirstPicture(browser, file) {
 }
 
 async function timePoses(browser, file) {
-  const studio = await startStudio([file]);
+  const studio = await startStudio([file], { clock: "machine" });
   try {
     const { page } = await openPage(browser, studio.operator);
     await waitForPicture(page);
@@ -47,7 +47,7 @@ async function timePoses(browser, file) {
 /** Times of pictures, each until one of its pixels has been read [ms]: shadows are drawn, and edges are smooth. The
  workshop is switched on and off in turns, so that other work of the machine meets both. */
 async function timeWorkshop(file) {
-  const studio = await startStudio([file]);
+  const studio = await startStudio([file], { clock: "machine" });
   const browser = await launchBrowser({ isSmooth: true });
   const times = { with: [], without: [] };
   try {

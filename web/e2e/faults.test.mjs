@@ -62,7 +62,7 @@ async function freeze(page) {
 
 /** No force in the hand, the part where it was; the banner says why. */
 async function findsForceTakenBack(viewer) {
-  await viewer.getByTestId("safety").waitFor({ timeout: 10_000 });
+  await viewer.getByTestId("safety").waitFor();
   assert.match(await viewer.getByTestId("safety").textContent(), /client/i);
   const state = await waitForState(viewer, ({ hands }) => hands.length > 0 && Math.hypot(...hands[0].f_felt_W_n) < 1e-3);
   assert.equal(state.held[0]?.occurrence, kShaft, "the part stays in the hand");

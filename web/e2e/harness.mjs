@@ -11,7 +11,8 @@ import WebSocket from "ws";
 export const kProgram = process.env["HVAS_BINARY"] ?? "../build/release/src/app/hvas";
 const kPictures = process.env["HVAS_PICTURES"] ?? "../build/pictures";
 const kChromium = process.env["HVAS_CHROMIUM"] ?? "/usr/bin/chromium";
-const kPatienceMs = 120_000;  // for what happens at once where nothing is wrong
+/** For what happens at once where nothing is wrong: no claim, as a busy machine is only slow. */
+export const kPatienceMs = 120_000;
 const kAxe = readFileSync("node_modules/axe-core/axe.min.js", "utf8");
 mkdirSync(kPictures, { recursive: true });
 
@@ -28,9 +29,10 @@ export function makeFolder() {
 const cookies = new Map();
 
 /** Starts `hvas studio`; its links, and how to end it. It keeps nothing with what its user keeps, and finds nothing there
- but what an earlier one with the same `home` has left. */
-export async function startStudio(args = [], { home = makeFolder() } = {}) {
-  const child = spawn(kProgram, ["studio", "--no-open", ...args], {
+ but what an earlier one with the same `home` has left. Its session goes on by steps, and waits for the page in whose hand
+ a part is; by the clock of the machine for who measures. */
+export async function startStudio(args = [], { home = makeFolder(), clock = "steps" } = {}) {
+  const child = spawn(kProgram, ["studio", "--no-open", "--clock", clock, ...args], {
     stdio: ["ignore", "pipe", "inherit"],
     env: { ...process.env, XDG_DATA_HOME: home, XDG_STATE_HOME: home },
   });
@@ -217,6 +219,7 @@ export async function openPage(browser, link, { beforeLoad = null, isPlain = tru
   const viewport = isPlain ? { width: 1024, height: 640 } : { width: 1280, height: 720 };
   const reducedMotion = isPlain ? "reduce" : "no-preference";
   const context = await browser.newContext({ viewport, reducedMotion, ...options });
+  context.setDefaultTimeout(kPatienceMs);
   const page = await context.newPage();
   if (isPlain) {
     await page.addInitScript(prefer, { quality: "low", guidesFirstPart: false });
@@ -247,7 +250,7 @@ function prefer(preferences) {
 /** Until this much of a scene has been drawn, with all parts: on a slow machine a product is shown as soon as its
  first parts are prepared, and what is pressed on while the others take their places is not what was aimed at. */
 export async function waitForPicture(page, frames = 3) {
-  const end = Date.now() + 60_000;
+  const end = Date.now() + kPatienceMs;
   const isWhole = async () => {
     const { epoch } = await stateOf(page);
     const scene = await fetchScene(page);
@@ -272,7 +275,7 @@ export function fetchScene(page) {
 }
 
 /** Until the page has been told that a part is there ("loose", "held", "placed"), and the server says so as well. */
-export async function waitForPlacement(page, occurrence, placement, timeout = 30_000) {
+export async function waitForPlacement(page, occurrence, placement, timeout = kPatienceMs) {
   const end = Date.now() + timeout;
   let found = "";
   while (Date.now() < end) {
@@ -327,14 +330,16 @@ export function findOutside(page) {
   });
 }
 
-/** How a page may be seen otherwise than by default: in German, in the colours of the system, and twice as large.
- @param viewport  Of the page as it is not enlarged. */
-export function waysToSee({ width, height }) {
-  return {
-    German: { locale: "de-DE" },
-    "forced colours": { forcedColors: "active" },
-    "German at 200 %": { locale: "de-DE", deviceScaleFactor: 2, viewport: { width: width / 2, height: height / 2 } },
-  };
+/** How a page may be seen otherwise than by default, one after the other: in the colours of the system, and twice as large.
+ @param page  One in German, as its words are the longest. */
+export async function seeOtherwise(page, check) {
+  const { width, height } = page.viewportSize();
+  await check("German");
+  await page.emulateMedia({ forcedColors: "active" });
+  await check("forced colours");
+  await page.emulateMedia({ forcedColors: "none" });
+  await page.setViewportSize({ width: width / 2, height: height / 2 });
+  await check("German at 200 %");
 }
 
 export function stateOf(page) {
@@ -342,7 +347,7 @@ export function stateOf(page) {
 }
 
 /** Until what the page knows is so; returns it. It is asked once for each of its pictures. */
-export async function waitForState(page, isSo, timeout = 20_000) {
+export async function waitForState(page, isSo, timeout = kPatienceMs) {
   const end = Date.now() + timeout;
   let state = await stateOf(page);
   while (!isSo(state)) {
@@ -379,6 +384,18 @@ export async function waitForCalm(page) {
   await nextFrame(page, 2);
 }
 
+/** From now on notes whether something is ever on the page, however short; returns a function that says so. */
+export async function watchFor(page, selector) {
+  const watch = await page.evaluateHandle((wanted) => {
+    const noted = { isSeen: false };
+    const look = () => (noted.isSeen ||= document.querySelector(wanted) !== null);
+    new MutationObserver(look).observe(document.body, { childList: true, subtree: true, attributes: true });
+    look();
+    return noted;
+  }, selector);
+  return () => watch.evaluate(({ isSeen }) => isSeen);
+}
+
 /** Until the server has answered all that the page has sent it so far: what that has led to is known by then. */
 export function waitForAnswer(page) {
   return page.evaluate(() => window.hvas.hasAnswered());
@@ -387,10 +404,10 @@ export function waitForAnswer(page) {
 /** After so long without an input the server takes the force away: PointerOperator::kSilentNs [ms]. */
 export const kSilentMs = 250;
 
-/** Until the session has gone on by so much [ms], by the clock of the frames that the page gets. */
+/** Until the session has gone on by so much [ms], as the page has seen it. */
 export async function passSession(page, ms) {
   const from = await page.evaluate(() => window.hvas.sessionMs);
-  await page.waitForFunction((to) => window.hvas.sessionMs >= to, from + ms, { timeout: 30_000 });
+  await page.waitForFunction((to) => window.hvas.sessionMs >= to, from + ms);
 }
 
 /** A thing rests that is the same in so many pictures of the page, and for so long of the session [ms]: a hand that
@@ -399,7 +416,7 @@ const kStill = { frames: 4, sessionMs: 200, most: 1e-4 };
 
 /** Until what is read stays the same, but for `most` in each of its numbers; returns it. Null is nothing to wait for.
  @param options.isOver  Whether it is of no interest any more: a session may end on the way. */
-export async function waitForStill(page, read, options = {}, timeout = 30_000) {
+export async function waitForStill(page, read, options = {}, timeout = kPatienceMs) {
   const { frames, sessionMs, most, isOver } = { ...kStill, ...options };
   const end = Date.now() + timeout;
   const look = async () => ({ seen: await read(), at: await page.evaluate(() => window.hvas.sessionMs) });
@@ -497,7 +514,7 @@ export async function findAndClickFace(page, occurrence, face, moving, turn = tu
 export async function takeByMouse(page, occurrence) {
   await waitForState(page, ({ leadsHand }) => leadsHand);  // who leads no hand takes nothing
   // The page brings the next part into its picture; it is pressed where it is seen when the button goes down.
-  await page.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence, { timeout: 20_000 });
+  await page.waitForFunction((id) => window.hvas.screen(id)?.isVisible, occurrence);
   await waitForView(page);
   const at = await page.evaluate((id) => window.hvas.screen(id), occurrence);
   assert.ok(at.isVisible, `part ${occurrence} is to be seen`);

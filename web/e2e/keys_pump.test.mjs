@@ -62,14 +62,13 @@ async function insertByKeys(page, step, goal) {
   const kBefore = 0.05;
   const kOn = 0.01;
   const kTries = 30;
-  const kPatience = 120_000;
   const isOver = async () => {
     const { placements, held } = await stateOf(page);
     return placements[step.occurrence] === "placed" || held[0]?.state === "seated";
   };
   // It may go on turning slowly about its axis: that is not waited for.
   const whereabouts = async () => ({ p: (await poseOf(page, step.occurrence)).p });
-  const rest = () => waitForStill(page, whereabouts, { frames: 3, sessionMs: 120, most: 3e-4, isOver }, kPatience);
+  const rest = () => waitForStill(page, whereabouts, { frames: 3, sessionMs: 120, most: 3e-4, isOver });
   const goTo = async (target, presses) => {
     let within = 0;
     for (let count = 0; count < 6 && !(await isOver()); count++) {
@@ -94,7 +93,7 @@ async function insertByKeys(page, step, goal) {
     await rest();
   }
   // What has been let go is told of by a frame, and that it is placed by an event a little later.
-  await waitForPlacement(page, step.occurrence, "placed", kPatience);
+  await waitForPlacement(page, step.occurrence, "placed");
 }
 
 describe("the whole gear pump", () => {

@@ -38,17 +38,12 @@ async function pointAt(page, p_W) {
 /** As insertByMouse(), but a part that turns slowly about its axis counts as at rest: most are round. */
 async function insertRoundByMouse(page, occurrence, [x, y, z]) {
   const kOver = 0.12;
-  const kPatience = 120_000;
   await takeByMouse(page, occurrence);
   await pointAt(page, [x, y, z + kOver]);
   const whereabouts = async () => ({ p: (await poseOf(page, occurrence)).p });
-  await waitForStill(page, whereabouts, { frames: 3, sessionMs: 120, most: 3e-4 }, kPatience);
+  await waitForStill(page, whereabouts, { frames: 3, sessionMs: 120, most: 3e-4 });
   await pointAt(page, [x, y, z - 0.01]);
-  await waitForState(
-    page,
-    ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed",
-    kPatience,
-  );
+  await waitForState(page, ({ held, placements }) => held[0]?.state === "seated" || placements[occurrence] === "placed");
 }
 
 describe("twelve loose parts", () => {
@@ -65,7 +60,7 @@ describe("twelve loose parts", () => {
     for (const step of inserts) {
       await insertRoundByMouse(page, step.occurrence, scene.occurrences[step.occurrence].goal.p);
       await page.mouse.up();
-      await waitForPlacement(page, step.occurrence, "placed", 60_000);
+      await waitForPlacement(page, step.occurrence, "placed");
     }
     await takePicture(page, "loose_done");
     const { occurrences } = await fetchScene(page);
@@ -86,15 +81,15 @@ describe("twelve loose parts", () => {
       const { epoch, mates } = await fetchScene(page);
       await page.getByTestId(`part-${shaft.id}`).click();
       await page.getByTestId(`remove-mate-${mates.find((m) => m.key === key).id}`).click();
-      await waitForState(page, (state) => state.hasScene && state.epoch > epoch, 60_000);
+      await waitForState(page, (state) => state.hasScene && state.epoch > epoch);
     }
     const without = await fetchScene(page);
     assert.ok(offOf(without.occurrences[shaft.id]) > 0.05, "where it is drawn");
     await page.keyboard.press("Control+z");
-    await waitForState(page, ({ epoch }) => epoch < without.epoch, 60_000);
+    await waitForState(page, ({ epoch }) => epoch < without.epoch);
     await page.getByTestId("mate-freedom").first().waitFor();
     await page.keyboard.press("Control+z");
-    await waitForState(page, ({ epoch }) => epoch === before.epoch, 60_000);
+    await waitForState(page, ({ epoch }) => epoch === before.epoch);
     assert.ok(offOf((await fetchScene(page)).occurrences[shaft.id]) < kSamePlace, "where the mates say");
     await page.context().close();
   }));

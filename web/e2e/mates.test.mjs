@@ -32,7 +32,7 @@ function removeMate(kind, a, b) {
 }
 
 async function epochAfter(page, epoch) {
-  return waitForState(page, (state) => state.hasScene && state.epoch > epoch, 60_000);
+  return waitForState(page, (state) => state.hasScene && state.epoch > epoch);
 }
 
 describe("a mate", () => {

@@ -5,6 +5,7 @@ import {
   browser,
   fetchScene,
   findBarriers,
+  kPatienceMs,
   nextFrame,
   openPage,
   shareBrowser,
@@ -24,7 +25,7 @@ async function waitForSummary(page) {
   await page.waitForFunction(() => {
     const text = document.querySelector("[data-testid=order-summary]")?.textContent ?? "";
     return text !== "" && !text.includes("…");
-  }, null, { timeout: 60_000 });
+  }, null);
   return summary.textContent();
 }
 
@@ -55,7 +56,7 @@ describe("the order of assembly", () => {
 
     // An order that was found is possible; dragged by the mouse it is an own one.
     await page.getByTestId("order-find").click();
-    await page.getByTestId("order-choice").waitFor({ timeout: 60_000 });
+    await page.getByTestId("order-choice").waitFor();
     assert.match(await waitForSummary(page), /^Cost \d+/);
     const choices = page.getByTestId("order-choice").locator("option");
     assert.ok((await choices.count()) >= 2);
@@ -77,7 +78,7 @@ describe("the order of assembly", () => {
     await waitForSummary(page);
     await page.getByTestId("order-use").click();
     await page.getByTestId("order-open").waitFor();
-    const deadline = Date.now() + 20_000;
+    const deadline = Date.now() + kPatienceMs;
     let after = before;
     while (after.join() === before.join() && Date.now() < deadline) {
       await nextFrame(page);

@@ -38,16 +38,16 @@ async function recordStep(page, occurrence) {
   await waitForState(page, (state) => state.recording !== null);
   await page.evaluate(() => document.activeElement?.blur());
   await page.keyboard.press("n");
-  await waitForPlacement(page, occurrence, "placed", 90_000);
+  await waitForPlacement(page, occurrence, "placed");
   const after = await waitForRest(page, occurrence, { most: 1e-7 }); // It is compared to 1e-6.
   await page.getByTestId("rec").click();
-  await page.getByTestId("open-last").waitFor({ timeout: 30_000 });
+  await page.getByTestId("open-last").waitFor();
   return { before, after };
 }
 
 async function openLast(page) {
   await page.getByTestId("open-last").click();
-  await page.getByTestId("playing").waitFor({ timeout: 30_000 });
+  await page.getByTestId("playing").waitFor();
   return waitForState(page, (state) => state.hasScene && state.playback !== null && state.hands.length > 0);
 }
 
@@ -91,7 +91,7 @@ describe("a recording", () => {
 
     await page.getByTestId("speed").selectOption("8");
     await page.getByTestId("button-play").click();
-    await waitForState(page, (state) => !state.playback.isPlaying && state.placements[1] === "placed", 60_000);
+    await waitForState(page, (state) => !state.playback.isPlaying && state.placements[1] === "placed");
     await nextFrame(page, 2);
     assertSamePose(await poseOf(page, kBushingPart), poses.after);
 
@@ -103,7 +103,7 @@ describe("a recording", () => {
     await page.waitForFunction(() => /#t=/.test(document.querySelector('[data-testid="share-link"]')?.value ?? ""));
     const other = await openPage(browser, await page.getByTestId("share-link").inputValue(), { isStranger: true });
     await page.keyboard.press("Escape");
-    await other.page.getByTestId("playing").waitFor({ timeout: 30_000 });
+    await other.page.getByTestId("playing").waitFor();
     const shared = await waitForState(other.page, (state) => state.playback !== null && state.hasScene);
     assert.ok(Math.abs(shared.playback.timeS - middle.playback.timeS) < 2e-3, "the link leads to the moment");
     await other.page.context().close();
@@ -158,7 +158,7 @@ describe("a recording", () => {
       await rows.nth(k).getByRole("checkbox").check();
     }
     await page.getByTestId("compare-chosen").click();
-    await page.getByTestId("compare-table").waitFor({ timeout: 30_000 });
+    await page.getByTestId("compare-table").waitFor();
     await page.getByTestId("compare-part").selectOption({ index: 1 });
     await page.getByRole("radio", { name: "Depth" }).click();
     await waitForCalm(page);
@@ -179,7 +179,7 @@ describe("a recording", () => {
   it("of another product brings that product, and live work comes back after it", async () => {
     await dropFile(page, "gear_pump.step", readFileSync(kPump, "utf8"));
     const isPump = (state) => Object.keys(state.placements).length === 38;
-    await waitForState(page, isPump, 120_000);
+    await waitForState(page, isPump);
     await page.getByTestId("open-recordings").click();
     await page.getByTestId("recordings").getByRole("button", { name: /^Play/ }).click();  // there is no other one
     await waitForState(page, (state) => Object.keys(state.placements).length === 3);

@@ -112,8 +112,8 @@ describe("a page", () => {
     await waitForPicture(page);
     await page.evaluate(() => document.activeElement?.blur());
     await page.keyboard.press("n");
-    await waitForPlacement(page, kBushingPart, "placed", 90_000);
-    await waitForState(page, ({ demo }) => !demo, 60_000);
+    await waitForPlacement(page, kBushingPart, "placed");
+    await waitForState(page, ({ demo }) => !demo);
     await waitForKept(home, (work) => work.parts[kBushingPart].placement === "placed");
     await first.kill();
     await waitForState(page, ({ link }) => link === "lost");
@@ -126,18 +126,17 @@ describe("a page", () => {
       page,
       ({ link, hasScene, placements, epoch: now }) =>
         link === "open" && hasScene && now !== null && now !== epochBefore && placements[kBushingPart] === "placed",
-      60_000,
     );
     assert.equal(epoch, (await fetchScene(page)).epoch);
     await waitForState(page, ({ hasLease }) => hasLease);
     await page.getByRole("log").filter({ hasText: /is restored/ }).waitFor({ state: "attached" });
     await takePicture(page, "restart_back");
     await page.keyboard.press("n");  // the next part
-    await waitForPlacement(page, 2, "placed", 90_000);
+    await waitForPlacement(page, 2, "placed");
     assert.equal(await second.stop(), 0);
 
     const third = await start([kBushing, "--new-links", "--port", new URL(first.origin).port], { home });
-    await page.getByTestId("denied").waitFor({ timeout: 30_000 });
+    await page.getByTestId("denied").waitFor();
     await takePicture(page, "restart_denied");
     assert.equal((await stateOf(page)).link, "denied");
     assert.equal(await third.stop(), 0);

@@ -132,32 +132,6 @@ describe("two operators", () => {
     await waitForPlacement(second, kShaft, "loose");
   });
 
-  it("pass a part from one hand into the other, when it is asked for", async () => {
-    await first.getByTestId("hint-join").click();
-    await second.getByTestId("lease-asked").getByRole("button", { name: "Give" }).click();
-    await waitForState(second, ({ hands }) => hands.length === 2);
-    await first.getByTestId("hint-join").waitFor({ state: "detached" });
-    await takeByMouse(second, kShaft);
-    await second.mouse.up();
-    const before = await waitForRest(second, kShaft);
-
-    await first.getByTestId("ask-part").click();
-    await second.getByTestId("part-asked").waitFor();
-    await takePicture(second, "part_asked");
-    await second.getByTestId("part-asked").getByRole("button", { name: "Hand over" }).click();
-    await waitForState(first, ({ held }) => held.length === 1 && held[0].hand === 1);
-    assert.ok(distance(await waitForRest(first, kShaft), before) < 0.005, "it has not fallen");
-    assert.equal(await second.getByTestId("part-asked").count(), 0);
-
-    await takeOverByMouse(first, kShaft);
-    const at = await first.evaluate((id) => window.hvas.screen(id), kShaft);
-    await first.mouse.move(at.x + 10, at.y - 60, { steps: 5 });
-    assert.ok(distance(await waitForRest(first, kShaft), before) > 0.01, "the first one goes on with it");
-    await first.mouse.up();
-    await first.keyboard.press("r");
-    await waitForPlacement(first, kShaft, "loose");
-  });
-
   it("find it free where the other one has left", async () => {
     assert.equal((await stateOf(first)).hasLease, false);
     await second.context().close();

@@ -1,5 +1,5 @@
-// A session of a study, as the participant and as the experimenter sees it (docs/studio.md), with the mock's study of
-// three trials. Whoever is not looked at is there without a page: two pictures are too much for a slow machine.
+// A session of a study, as the participant and as the experimenter sees it (docs/studio.md). Whoever is not looked at is
+// there without a page: two pictures are too much for a slow machine. `study_live.test.mjs` does its trials by hand.
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
 import {
@@ -13,21 +13,28 @@ import {
   waitForState,
   waitForView,
 } from "./harness.mjs";
-import { withMockStudy } from "./study_mock.mjs";
-import { agree, clickPart, kPatient, openQuietPage, press, startTrial } from "./study_steps.mjs";
+import { withStudy } from "./study_server.mjs";
+import { agree, clickPart, openQuietPage, press, startTrial } from "./study_steps.mjs";
 
-const kShaft = 2;
+const [kSleeve, kShaft] = [1, 2];
 const kTablet = { width: 834, height: 1112 };
 /** What a fit or a condition is called; none of it may ever be in a participant's page. */
 const kSecrets = /H7\/|\b(A1|B1|B2)\b|Clearance|Interference|µm|seed/;
 
 shareBrowser();
 
+/** The experimenter without a page, once the session can begin. */
+async function joinAsExperimenter(study) {
+  const desk = study.join(study.operator);
+  await desk.until((state) => state.is_open);
+  return desk;
+}
+
 /** The participant's page, and the experimenter without one. */
 async function openAsParticipant(study, options) {
   const { page: person, complaints } = await openQuietPage(browser, study.participant, options);
   await person.getByTestId("page-waiting").waitFor();
-  return { person, complaints, desk: study.join(study.operator) };
+  return { person, complaints, desk: await joinAsExperimenter(study) };
 }
 
 /** The experimenter's page, and the participant without one. */
@@ -68,30 +75,19 @@ async function passTraining(desk, person) {
   await person.getByTestId("page-ready").waitFor();
 }
 
-/** Until the part is half in. */
-function waitForMating(person) {
-  return person.locator('[data-testid="task-hint"][data-state="mating"]').waitFor();
-}
-
-/** In a trial by picking: wrong surfaces are refused, two right pairs end it. */
-async function pickSurfaces(person) {
+/** In a trial by picking: wrong surfaces are refused. */
+async function pickWrongSurfaces(person) {
   await person.getByText("Click a surface of the marked part.").waitFor();
   await waitForView(person);
   await takePicture(person, "study_picking");
   await clickPart(person, 0);
   await person.getByText("Now click the surface that it belongs to.").waitFor();
-  await clickPart(person, 1);
+  await clickPart(person, kSleeve);
   await person.getByText("These two do not belong together.").waitFor();
-  await clickPart(person, kShaft);
-  await clickPart(person, 1);
-  await person.getByText("Constraints left: 1").waitFor();
-  await takePicture(person, "study_picking_left");
-  await clickPart(person, kShaft);
-  await clickPart(person, 1);
 }
 
 describe("a participant", () => {
-  it("comes from the consent to the thanks, and each page can be used by all", withMockStudy(async (study) => {
+  it("comes from the consent to the thanks, and each page can be used by all", withStudy(async (study) => {
     const { desk, person, complaints } = await openAsParticipant(study);
     await look(person, "waiting");
     await desk.do("begin");
@@ -115,26 +111,29 @@ describe("a participant", () => {
     await person.getByTestId("page-ready").waitFor();
     await look(person, "ready");
     await startTrial(person);
-    study.work();
-    await waitForMating(person);
-    await takePicture(person, "study_trial_mating");
+    await person.keyboard.press("g");
+    await waitForState(person, (state) => state.held.length === 1);
+    await takePicture(person, "study_trial_held");
     await assertTellsNothing(person);
-    study.work();
+    await desk.do("next");
 
-    await person.getByText("Trial 2", { exact: true }).waitFor();
-    await startTrial(person);
-    study.work();
-    await waitForMating(person);
-    study.work();
-    await person.getByTestId("question-choice").waitFor();
-    await look(person, "identify");
-    assert.equal(await person.getByTestId("answer-skip").count(), 0, "it has to be answered");
-    await person.getByTestId("answer-H7/p6").check();
-    await press(person, "answer-send");
+    for (const trial of [2, 3]) {
+      await person.getByText(`Trial ${trial}`, { exact: true }).waitFor();
+      await startTrial(person);
+      await desk.do("next");
+      await person.getByTestId("question-choice").waitFor();
+      if (trial === 2) {
+        await look(person, "identify");
+        assert.equal(await person.getByTestId("answer-skip").count(), 0, "it has to be answered");
+      }
+      await person.getByTestId("answer-H7/p6").check();
+      await press(person, "answer-send");
+    }
 
-    await person.getByText("Trial 3", { exact: true }).waitFor();
+    await person.getByText("Trial 4", { exact: true }).waitFor();
     await startTrial(person);
-    await pickSurfaces(person);
+    await pickWrongSurfaces(person);
+    await desk.do("next");
 
     await person.getByTestId("question-scale").waitFor();
     await press(person, "answer-send");
@@ -160,14 +159,16 @@ describe("a participant", () => {
     await person.getByTestId("page-done").waitFor();
     await look(person, "done");
     const { done, answers } = await desk.until((state) => state.phase === "done");
-    assert.deepEqual(done.map(({ condition, outcome }) => [condition, outcome]), [["B1", "done"], ["B2", "done"], ["A1", "done"]]);
-    assert.equal(done[1].is_right, true);
+    const [first, ...blind] = done.map(({ condition, outcome, is_right: isRight }) => [condition, outcome, isRight]);
+    assert.deepEqual(first, ["B1", "not_done", null]);
+    assert.deepEqual(blind.slice(0, 2).sort(), [["B1", "not_done", false], ["B2", "not_done", true]], "H7/p6 was one of them");
+    assert.deepEqual(blind[2], ["A1", "not_done", null]);
     assert.deepEqual(answers.map(({ value }) => value), [8, "The second one creaked."]);
     assert.deepEqual(complaints, []);
     await person.context().close();
   }));
 
-  it("who does not agree is asked nothing more", withMockStudy(async (study) => {
+  it("who does not agree is asked nothing more", withStudy(async (study) => {
     const { desk, person } = await openAsParticipant(study);
     await desk.do("begin");
     await press(person, "consent-decline");
@@ -180,7 +181,7 @@ describe("a participant", () => {
     await person.context().close();
   }));
 
-  it("reads German on a tablet, from the consent on", withMockStudy(async (study) => {
+  it("reads German on a tablet, from the consent on", withStudy(async (study) => {
     const { desk, person } = await openAsParticipant(study, { viewport: kTablet, hasTouch: true });
     await desk.do("begin");
     await person.getByTestId("study-language-de").check();
@@ -197,24 +198,24 @@ describe("a participant", () => {
     await person.context().close();
   }));
 
-  it("can switch the forces off by Esc and by the button, and on again", withMockStudy(async (study) => {
+  it("can switch the forces off by Esc and by the button, and on again", withStudy(async (study) => {
     const { desk, person } = await openAsParticipant(study);
     await desk.do("begin");
     await agree(person);
     await passTraining(desk, person);
     await person.keyboard.press("Escape");
-    await waitForState(person, (state) => state.forcesOff, kPatient);
+    await waitForState(person, (state) => state.forcesOff);
     await startTrial(person);
     await person.getByTestId("study-forces-off").waitFor();
     await look(person, "forces_off");
     await press(person, "forces-on");
-    await waitForState(person, (state) => !state.forcesOff, kPatient);
+    await waitForState(person, (state) => !state.forcesOff);
     await press(person, "forces-off");
-    await waitForState(person, (state) => state.forcesOff, kPatient);
+    await waitForState(person, (state) => state.forcesOff);
     await person.context().close();
   }));
 
-  it("finds none of the studio's keys, menus, panels and secrets", withMockStudy(async (study) => {
+  it("finds none of the studio's keys, menus, panels and secrets", withStudy(async (study) => {
     const { desk, person } = await openAsParticipant(study);
     await desk.do("begin");
     await agree(person);
@@ -230,7 +231,7 @@ describe("a participant", () => {
     await waitForCalm(person);
     await assertTellsNothing(person);
     await person.keyboard.press("g");
-    await waitForState(person, (state) => state.held.length === 1, kPatient);
+    await waitForState(person, (state) => state.held.length === 1);
     await assertTellsNothing(person);
     const told = await person.evaluate(async () => {
       const scene = await (await fetch("/api/scene")).json();
@@ -240,14 +241,15 @@ describe("a participant", () => {
     await person.context().close();
   }));
 
-  it("waits where the connection is lost, and goes on where it was", withMockStudy(async (study) => {
-    const { desk, person } = await openAsParticipant(study);
+  it("waits where the connection is lost, and goes on where it was", withStudy(async (study) => {
+    const line = await study.overLine(study.participant);
+    const { desk, person } = await openAsParticipant({ ...study, participant: line.link });
     await desk.do("begin");
     await person.getByTestId("consent-agree").check();
-    study.cut();
+    await line.cut();
     await person.getByTestId("study-lost").waitFor();
     await takePicture(person, "study_lost");
-    study.mend();
+    await line.mend();
     await person.getByTestId("study-lost").waitFor({ state: "detached" });
     assert.ok(await person.getByTestId("consent-agree").isChecked(), "what was ticked stays so");
     await press(person, "consent-begin");
@@ -259,8 +261,8 @@ describe("a participant", () => {
 });
 
 describe("a viewer", () => {
-  it("sees what the participant sees, and can do nothing", withMockStudy(async (study) => {
-    const [desk, person] = [study.join(study.operator), study.join(study.participant)];
+  it("sees what the participant sees, and can do nothing", withStudy(async (study) => {
+    const [desk, person] = [await joinAsExperimenter(study), study.join(study.participant)];
     await desk.do("begin");
     const { page } = await openQuietPage(browser, study.viewer);
     await page.getByTestId("page-consent").waitFor();
@@ -278,7 +280,7 @@ describe("a viewer", () => {
 });
 
 describe("the experimenter", () => {
-  it("sees all of a session, writes notes, aborts for a reason, and goes on", withMockStudy(async (study) => {
+  it("sees all of a session, writes notes, aborts for a reason, and goes on", withStudy(async (study) => {
     const { desk, person, complaints } = await openAsExperimenter(study);
     await waitForPicture(desk);
     await press(desk, "desk-begin");
@@ -307,22 +309,26 @@ describe("the experimenter", () => {
 
     await press(desk, "desk-ready");
     await person.until((state) => state.elapsed_s !== null);
-    study.work();
+    await person.insertHalf(kShaft);
     await desk.getByTestId("desk-hold").getByText("mating").waitFor();
     await takePicture(desk, "study_desk_mating");
-    study.work();
+    await person.insert();
     await person.until((state) => state.phase === "ready" && state.trial === 2);
-    await person.do("ready");
-    await press(desk, "desk-not-done");
-    await desk.locator('[data-testid="desk-trials"] tbody').getByText("not done").waitFor();
-    await person.do("answer", { question: "identify", value: "H7/g6" });
+    for (const trial of [2, 3]) {
+      await person.until((state) => state.phase === "ready" && state.trial === trial);
+      await person.do("ready");
+      await press(desk, "desk-not-done");
+      await person.until((state) => state.phase === "question");
+      await person.do("answer", { question: "identify", value: "H7/g6" });
+    }
+    await desk.locator('[data-testid="desk-trials"] tbody').getByText("not done").first().waitFor();
     await person.do("ready");
     await press(desk, "desk-not-done");
     await person.until((state) => state.phase === "question");
     await person.do("answer", { question: "steady", value: 8 });
     await person.do("answer", { question: "remarks", value: null });
     await desk.locator('[data-testid="desk-phase"][data-phase="done"]').waitFor();
-    assert.equal(await desk.locator('table[data-testid="desk-trials"] tbody tr').count(), 3);
+    assert.equal(await desk.locator('table[data-testid="desk-trials"] tbody tr').count(), 4);
     assert.match(await desk.locator('table[data-testid="desk-trials"]').innerText(), /H7\/g6 ✗/);
     assert.match(await desk.getByTestId("desk-answers").innerText(), /steady\s*8\s*remarks\s*no answer/);
     await look(desk, "desk_done");
@@ -331,7 +337,7 @@ describe("the experimenter", () => {
     await desk.context().close();
   }));
 
-  it("has a link for the participant until there is one, and does not take the hand", withMockStudy(async (study) => {
+  it("has a link for the participant until there is one, and does not take the hand", withStudy(async (study) => {
     const { page: desk } = await openQuietPage(browser, study.operator);
     await desk.getByTestId("participant-link").waitFor();
     assert.equal(await desk.getByTestId("participant-link").inputValue(), study.participant);

@@ -19,6 +19,7 @@ import {
   turnView,
   waitForPicture,
   waitForRest,
+  watchFor,
 } from "./harness.mjs";
 import { StudyPeer } from "./study_peer.mjs";
 import { agree, openQuietPage, press, startTrial } from "./study_steps.mjs";
@@ -149,7 +150,9 @@ describe("a session with a person", () => {
       await pickConstraints(person, scene, occurrence);
       await person.getByRole("heading", { name: "Trial 2" }).waitFor();
       await startTrial(person);
+      const isMating = await watchFor(person, '[data-testid="task-hint"][data-state="mating"]');
       await insertPart(person, occurrence, goal.p);
+      assert.ok(await isMating(), "the page says that the part is half in");
 
       await person.getByTestId("answer-8").check();
       await press(person, "answer-send");

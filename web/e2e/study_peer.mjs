@@ -1,17 +1,41 @@
 // Somebody at the link of a study, without a page: a second picture is too much for a slow machine.
 import { EventEmitter, once } from "node:events";
 import WebSocket from "ws";
-import { signIn } from "./harness.mjs";
+import { kPatienceMs, signIn } from "./harness.mjs";
+import { compose, inverse } from "./poses.mjs";
+
+const kInputMs = 16;  // between two inputs of a hand that is led
+const kStep = 0.002;  // [m] of the hand from one to the next
+const kHalf = 0.02;  // [m] that a shaft sticks out yet when it is half in
+
+/** The frame of docs/protocol.md that says where a hand is; it grips. */
+function makeInput({ p, q }) {
+  const kHeader = 32;
+  const frame = Buffer.alloc(kHeader + 40);
+  frame.write("HVAS", 0, "latin1");
+  frame.writeUInt16LE(1, 4); // version
+  frame.writeUInt16LE(16, 6); // Input
+  frame.writeUInt32LE(frame.length, 8);
+  frame.writeUInt32LE(1, 20); // one item
+  frame.writeUInt32LE(1, kHeader + 4); // it grips
+  [...p, ...q].forEach((v, k) => frame.writeFloatLE(v, kHeader + 8 + 4 * k));
+  return frame;
+}
 
 /** What a page would send, and what it would be sent. */
 export class StudyPeer {
   #socket;
   #answers = new Map();
   #news = new EventEmitter();
+  #link;
+  #leading = null;
+  #hand = null;
+  #goal = null;
   state = null;
   heard = [];
 
   constructor(link) {
+    this.#link = link;
     this.#socket = this.#connect(link);
   }
 
@@ -24,6 +48,7 @@ export class StudyPeer {
   }
 
   async leave() {
+    clearInterval(this.#leading);
     (await this.#socket).terminate();
   }
 
@@ -39,24 +64,66 @@ export class StudyPeer {
     this.#answers.get(message.id)?.(message);
   }
 
-  async do(action, fields = {}) {
+  do(action, fields = {}) {
+    return this.#send({ command: "study", action, ...fields });
+  }
+
+  async #send(command) {
     const socket = await this.#socket;
     const id = this.#answers.size + 1;
     const answer = new Promise((resolve) => this.#answers.set(id, resolve));
-    socket.send(JSON.stringify({ id, command: "study", action, ...fields }));
+    socket.send(JSON.stringify({ id, ...command }));
     const { ok, result, error } = await answer;
     if (!ok) {
-      throw new Error(`${action}: ${error.message}`);
+      throw new Error(`${command.action ?? command.command}: ${error.message}`);
     }
     return result;
   }
 
+  /** Takes a part and puts it half into its place, as a hand does; it is held there. */
+  async insertHalf(occurrence) {
+    const { origin, cookie } = await signIn(this.#link);
+    const scene = await (await fetch(`${origin}/api/scene`, { headers: { Cookie: cookie } })).json();
+    const { start, goal } = scene.occurrences[occurrence];
+    const { hand } = await this.#send({ command: "take", hand: 0, occurrence });
+    this.#hand = hand;
+    const socket = await this.#socket;
+    // eslint-disable-next-line no-restricted-globals -- A page repeats where its hand is, also while that stands still.
+    this.#leading = setInterval(() => socket.send(makeInput(this.#hand)), kInputMs);
+    this.#goal = compose(goal, compose(inverse(start), hand));
+    const kOver = 0.12;
+    await this.#moveTo({ p: [hand.p[0], hand.p[1], this.#goal.p[2] + kOver], q: hand.q });
+    await this.#moveTo(this.#over(kOver));
+    await this.#moveTo(this.#over(kHalf));
+  }
+
+  /** Puts it in wholly; a hand that feels the end presses a little. */
+  async insert() {
+    await this.#moveTo(this.#over(-0.005));
+  }
+
+  #over(height) {
+    const { p, q } = this.#goal;
+    return { p: [p[0], p[1], p[2] + height], q };
+  }
+
+  /** Leads the hand straight to a pose; it turns at the end of the way. */
+  async #moveTo({ p, q }) {
+    const from = this.#hand.p;
+    const steps = Math.max(1, Math.ceil(Math.hypot(...p.map((v, k) => v - from[k])) / kStep));
+    for (let n = 1; n <= steps; n++) {
+      this.#hand = { p: p.map((v, k) => from[k] + ((v - from[k]) * n) / steps), q: n === steps ? q : this.#hand.q };
+      // eslint-disable-next-line no-restricted-globals -- The pace of a hand, not a wait for what it does.
+      await new Promise((resolve) => setTimeout(resolve, kInputMs));
+    }
+  }
+
   /** Until the study is so. */
-  async until(isSo, timeout = 60_000) {
-    const late = AbortSignal.timeout(timeout);
+  async until(isSo) {
+    const late = AbortSignal.timeout(kPatienceMs);
     while (this.state === null || !isSo(this.state)) {
       await once(this.#news, "study", { signal: late }).catch(() => {
-        throw new Error(`not so after ${timeout} ms: ${isSo}, but ${JSON.stringify(this.state)}`);
+        throw new Error(`not so after ${kPatienceMs} ms: ${isSo}, but ${JSON.stringify(this.state)}`);
       });
     }
     return this.state;

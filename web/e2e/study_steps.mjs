@@ -1,12 +1,8 @@
 // What participant and experimenter do in their pages, whatever server is behind them.
 import { openPage } from "./harness.mjs";
 
-export const kPatient = 60_000;
-
-export async function openQuietPage(browser, link, options = {}) {
-  const opened = await openPage(browser, link, { colorScheme: "light", ...options });
-  opened.page.setDefaultTimeout(kPatient);
-  return opened;
+export function openQuietPage(browser, link, options = {}) {
+  return openPage(browser, link, { colorScheme: "light", ...options });
 }
 
 /** Presses a button as soon as it can be pressed. */

@@ -33,7 +33,7 @@ async function doStepsBefore(page, scene, part) {
   const wanted = scene.steps.findIndex(({ occurrence, kind }) => occurrence === part && kind === "insert");
   for (let index = (await stateOf(page)).step.index; index < wanted; index++) {
     await page.keyboard.press("n");
-    await waitForState(page, ({ step, demo }) => step.index > index && !demo, 90_000);
+    await waitForState(page, ({ step, demo }) => step.index > index && !demo);
   }
 }
 
@@ -73,7 +73,7 @@ it("two people put the cover on together, handing it over, and eight look on", w
 
   await takeOverByMouse(second, cover.id);
   await bringInByMouse(second, cover.id, cover.goal.p);
-  await waitForPlacement(second, cover.id, "placed", 60_000);
+  await waitForPlacement(second, cover.id, "placed");
   await second.mouse.up();
   await takePicture(first, "two_people_cover");
   const led = await waitForRest(first, cover.id);

@@ -69,7 +69,7 @@ async function enter(page) {
 /** Until so many pictures have been drawn: an emulated headset is slow without a graphics processor. */
 async function frames(page, count) {
   const from = await page.evaluate(() => window.hvas.framesDrawn);
-  await page.waitForFunction((to) => window.hvas.framesDrawn >= to, from + count, { timeout: 30_000 });
+  await page.waitForFunction((to) => window.hvas.framesDrawn >= to, from + count);
 }
 
 const hands = (page) => page.evaluate(() => window.hvas.room.hands());
@@ -134,7 +134,7 @@ describe("somebody in VR", () => {
     const { page, complaints } = await openVr(studio.operator);
     const scene = await fetchScene(page);
     await page.keyboard.press("n");  // the bushing first: by the simulated person
-    await waitForPlacement(page, kSleeve, "placed", 60_000);
+    await waitForPlacement(page, kSleeve, "placed");
     await waitForState(page, ({ demo }) => !demo);
     await enter(page);
     await takePicture(page, "vr_entered");
@@ -170,7 +170,7 @@ describe("somebody in VR", () => {
         await takePicture(page, "vr_inserting");
       }
     }
-    await waitForState(page, ({ held }) => held[0]?.state === "seated", 15_000);
+    await waitForState(page, ({ held }) => held[0]?.state === "seated");
     await takePicture(page, "vr_seated");
     const pulses = await page.evaluate(() => window.pulses);
     assert.ok(pulses.some((p) => p.ms === 60), "capture is felt");

@@ -1,15 +1,14 @@
-// Pictures of the page in its states, by headless Chromium, into shots/:
-//   npm run shots -- --url http://127.0.0.1:8600/#t=mock [--only dark,light]
+// Pictures of the page in its states, by headless Chromium and the program itself, into shots/:
+//   npm run shots -- [--file ../products/gear_pump.step] [--only dark,light]
 
 import { mkdirSync } from "node:fs";
 import { parseArgs } from "node:util";
-import { chromium } from "playwright-core";
+import { launchBrowser, openPage, startStudio, waitForPicture } from "../e2e/harness.mjs";
 
 const { values: options } = parseArgs({
   options: {
-    url: { type: "string", default: "http://127.0.0.1:8600/#t=mock" },
+    file: { type: "string", default: "../products/gear_pump.step" },
     only: { type: "string", default: "" },
-    browser: { type: "string", default: "/usr/bin/chromium" },
   },
 });
 
@@ -98,22 +97,18 @@ const states = {
 
 const wanted = options.only === "" ? Object.keys(states) : options.only.split(",");
 mkdirSync("shots", { recursive: true });
-const browser = await chromium.launch({
-  executablePath: options.browser,
-  args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
+const browser = await launchBrowser();
 for (const name of wanted) {
   const { size = [1440, 900], theme = "dark", locale = "en-US", go } = states[name];
-  const context = await browser.newContext({ viewport: { width: size[0], height: size[1] }, colorScheme: theme, locale });
-  const page = await context.newPage();
-  page.on("console", (m) => ["error", "warning"].includes(m.type()) && console.log(name, m.type(), m.text()));
-  page.on("pageerror", (error) => console.log(name, "error", error.message));
-  await page.goto(options.url);
-  await page.waitForFunction(() => window.hvas?.framesDrawn > 5);
-  await wait(page, 1500);
+  const studio = await startStudio([options.file], { clock: "machine" });
+  const look = { viewport: { width: size[0], height: size[1] }, colorScheme: theme, locale, isPlain: false };
+  const { page, complaints } = await openPage(browser, studio.operator, look);
+  await waitForPicture(page);
   await go(page);
   await page.screenshot({ path: `shots/${name}.png` });
   console.log(name, JSON.stringify(await page.evaluate(() => ({ drawn: window.hvas.framesDrawn, shared: window.hvas.state().isShared }))));
-  await context.close();
+  complaints.forEach((complaint) => console.log(name, complaint));
+  await page.context().close();
+  await studio.stop();
 }
 await browser.close();

@@ -463,10 +463,13 @@ TEST(AssembleWithDevice, WhatCannotBeOpenedIsNamedWithTheRemedy) {
   ExpectRefused({"--device", "emulated:openhaptics:sigma7"},
                 "hvas: openhaptics:sigma7: openhaptics has no device profile \"sigma7\" (one of: "
                 "omni, premium15, premium30, touch, touch_x)\n");
-  ExpectRefused({"--device", "openhaptics"},
-                "hvas: openhaptics: a real device needs the real-time loop (add --realtime)\n");
+  ExpectRefused(
+      {"--device", "openhaptics"},
+      "hvas: openhaptics: a real device needs the real-time loop (add --realtime, or leave out "
+      "--clock)\n");
   ExpectRefused({"--device", "emulated:haply", "--second-device", "haply"},
-                "hvas: haply: a real device needs the real-time loop (add --realtime)\n");
+                "hvas: haply: a real device needs the real-time loop (add --realtime, or leave out "
+                "--clock)\n");
   ExpectRefused({"--second-device", "emulated:haply"},
                 "hvas assemble: --second-device requires --device\n"
                 "Run hvas assemble --help for the commands and options.\n",

@@ -44,26 +44,25 @@ struct LargeMessage {
 
 // No value is torn, none is older than the one before, and the last one always arrives.
 TEST(TripleBufferThreads, NeverTearsNorGoesBack) {
-  constexpr int kUpdates = 20000;
+  constexpr std::uint64_t kMessages = 500'000;  // Work, not time: a busy machine is only slow.
   TripleBuffer<LargeMessage> buffer;
-  std::atomic<bool> is_enough{false};
-  std::uint64_t written = 0;
+  std::atomic<bool> is_over{false};
   std::thread writer([&] {
-    while (!is_enough.load(std::memory_order_relaxed)) {
+    for (std::uint64_t number = 1; number <= kMessages; ++number) {
       LargeMessage& message = buffer.back();
-      message.number = ++written;
-      message.copies.fill(written);
+      message.number = number;
+      message.copies.fill(number);
       buffer.Publish();
     }
+    is_over = true;
   });
   std::uint64_t last = 0;
   bool is_intact = true;
-  for (int updates = 0; updates < kUpdates;) {
+  while (!is_over.load(std::memory_order_relaxed)) {
     if (!buffer.Update()) {
       std::this_thread::yield();
       continue;
     }
-    ++updates;
     const LargeMessage& message = buffer.value();
     is_intact = is_intact && message.number > last;
     for (const std::uint64_t copy : message.copies) {
@@ -71,11 +70,10 @@ TEST(TripleBufferThreads, NeverTearsNorGoesBack) {
     }
     last = message.number;
   }
-  is_enough.store(true);
   writer.join();
   EXPECT_TRUE(is_intact);
   buffer.Update();
-  EXPECT_EQ(buffer.value().number, written);
+  EXPECT_EQ(buffer.value().number, kMessages);
 }
 
 }  // namespace

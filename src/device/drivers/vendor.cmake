@@ -47,6 +47,6 @@ hvas_test(openhaptics_test SOURCES test/openhaptics_test.cc DEPS hvas::device)
 hvas_test(force_dimension_test SOURCES test/force_dimension_test.cc DEPS hvas::device)
 hvas_test(virtuose_test SOURCES test/virtuose_test.cc DEPS hvas::device)
 hvas_test(library_live_test SOURCES test/library_live_test.cc DEPS hvas::device
-          LABELS "unit;thread")
+          LABELS "unit;thread;release")
 # Without label `unit`: the sanitizers end a process in ways of their own.
 hvas_test(process_end_test SOURCES test/process_end_test.cc DEPS hvas::device LABELS e2e)

@@ -52,4 +52,4 @@ target_compile_definitions(plugin_test PRIVATE
   HVAS_ODD_PLUGIN_HOLE="$<TARGET_FILE:odd_plugin_hole>")
 hvas_test(haply_test SOURCES test/haply_test.cc DEPS hvas::device)
 hvas_test(rate_devices_test SOURCES test/rate_devices_test.cc DEPS hvas::device)
-hvas_test(wire_live_test SOURCES test/wire_live_test.cc DEPS hvas::device LABELS unit thread)
+hvas_test(wire_live_test SOURCES test/wire_live_test.cc DEPS hvas::device LABELS unit thread release)

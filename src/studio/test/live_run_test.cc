@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/clock.h"
-#include "base/test/await_true.h"
+#include "base/loop_clock.h"
 #include "simulation/test/small_products.h"
 
 namespace hvas::studio {
@@ -62,20 +61,30 @@ class LiveRunTest : public ::testing::Test {
  protected:
   LiveRunTest() : model_(simulation::testing::PegInBlockModel()) {
     device_ = std::make_shared<device::OpenedDevice>(
-        *device::OpenAnyDevice("emulated:forcedimension:sigma7", true));
+        *device::OpenAnyDevice("emulated:forcedimension:sigma7", false));
+    Begin();
+  }
+
+  void Begin() {
     LiveOptions options;
     options.hands = {{device_, 0}};
+    options.clock = &clock_;
     run_ = std::make_unique<LiveRun>(model_, LiveState(), options, listener_.functions());
   }
 
   void SetFault(device::Fault fault) { device_->emulator->device().SetFault(fault); }
 
-  /** Moves the hand to a place until something holds, for a minute at most. */
+  /** Moves the hand to a place until something holds, for a minute of the session at most. */
   bool MoveUntil(const Vec3& p_WH, const std::function<bool()>& holds) {
-    return hvas::testing::AwaitTrue([&] {
+    constexpr std::int64_t kInputNs = 10'000'000;  // Between inputs of a page.
+    for (const std::int64_t end_ns = clock_.NowNs() + 60 * kNsPerSecond; !holds();) {
+      if (clock_.NowNs() >= end_ns) {
+        return false;
+      }
       run_->Move(0, Pose(p_WH), true);
-      return holds();
-    });
+      clock_.Advance(kInputNs);
+    }
+    return true;
   }
 
   [[nodiscard]] double force() const {
@@ -94,6 +103,7 @@ class LiveRunTest : public ::testing::Test {
     return reasons;
   }
 
+  SteeredClock clock_;
   std::shared_ptr<const simulation::Model> model_;
   Listener listener_;
   std::shared_ptr<device::OpenedDevice> device_;
@@ -124,9 +134,7 @@ TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
 TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
   const Pose X_WB = run_->state().parts[kPeg].X_WB;
   run_.reset();
-  LiveOptions options;
-  options.hands = {{device_, 0}};
-  run_ = std::make_unique<LiveRun>(model_, LiveState(), options, listener_.functions());
+  Begin();
   const Vec3 p_WH = X_WB * model_->bodies[kPeg].mass.p_BoBcm_B;
   EXPECT_TRUE(MoveUntil(p_WH, [&] {
     const simulation::Frame frame = listener_.frame();

@@ -101,7 +101,7 @@ class Texts final : public ClientLink {
 
 class PathCommandTest : public ::testing::Test {
  protected:
-  PathCommandTest() : bench_(testing::SmallBench()), hub_(&bench_, {}) {
+  PathCommandTest() : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
     viewer_ = hub_.Join(Role::kViewer, &texts_).value_or("");
   }

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "session/deformable_json.h"
 #include "studio/event_json.h"
 #include "studio/hub.h"
@@ -42,7 +41,8 @@ class CheckedLink final : public ClientLink {
 
 class ProtocolTest : public ::testing::Test {
  protected:
-  ProtocolTest() : bench_(testing::SmallBench()), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
+  ProtocolTest()
+      : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
     steers_ = *hub_.Join(Role::kOperator, &link_);
     (void)*hub_.Join(Role::kOperator, &other_link_);
@@ -58,8 +58,7 @@ class ProtocolTest : public ::testing::Test {
     now_ns_ += 1'000'000'000;
     link->reply.reset();
     hub_.OnText(id, command.dump(), now_ns_);
-    for (int i = 0; !link->reply && i < 6000; ++i) {
-      PumpOne(0.01);  // answered later
+    while (!link->reply && !PumpOne().empty()) {  // answered later
     }
     const Json reply = link->reply.value_or(nullptr);
     EXPECT_TRUE(reply.contains("ok")) << command;
@@ -73,8 +72,8 @@ class ProtocolTest : public ::testing::Test {
 
   /** Passes an event of the bench on, as the server does. @returns its name; empty: there is none.
    */
-  std::string PumpOne(double seconds) {
-    const auto event = log_.Await([](const Json&) { return true; }, pumped_, seconds);
+  std::string PumpOne() {
+    const auto event = log_.Await([](const Json&) { return true; }, pumped_);
     if (!event) {
       return "";
     }
@@ -85,7 +84,7 @@ class ProtocolTest : public ::testing::Test {
 
   void PumpUntil(const std::string& name) {
     for (std::string told; told != name;) {
-      told = PumpOne(60);
+      told = PumpOne();
       ASSERT_FALSE(told.empty()) << "waiting for " << name;
     }
   }
@@ -136,7 +135,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   PumpUntil("dropped");
   EXPECT_FALSE(Do({{"command", "next"}}).is_null());
   PumpUntil("dropped");
-  ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return !bench_.live().is_demo(); }));
+  ASSERT_TRUE(log_.AwaitTrue([&] { return !bench_.live().is_demo(); }));
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "points"}}).is_null());
   EXPECT_FALSE(Do({{"command", "path"}, {"occurrence", 1}, {"as", "swept"}}).is_null());
   EXPECT_FALSE(Do({{"command", "record"}, {"on", false}}).is_null());
@@ -189,7 +188,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}, {"hand", 1}}).is_null());
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "ask_part"}, {"hand", 0}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
-  ASSERT_TRUE(hvas::testing::AwaitTrue([this] {
+  ASSERT_TRUE(log_.AwaitTrue([this] {
     hub_.PublishStatus();
     return link_.events.count("status") > 0;
   }));

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 #include "studio/test/protocol_schema.h"
 #include "studio/test/small_bench.h"
@@ -17,7 +16,6 @@ namespace hvas::studio {
 namespace {
 
 namespace fs = std::filesystem;
-using hvas::testing::AwaitTrue;
 using simulation::Placement;
 
 constexpr product::OccurrenceId kKeptPeg(1);
@@ -30,8 +28,8 @@ class KeptWorkTest : public ::testing::Test {
   static void Open(Bench* one) {
     one->bench.opener().Open("peg.step", "peg");
     ASSERT_TRUE(one->log.Await("scene"));
-    ASSERT_TRUE(
-        AwaitTrue([&] { return one->bench.live().state().next_step > 0; }));  // the base is placed
+    ASSERT_TRUE(one->log.AwaitTrue(
+        [&] { return one->bench.live().state().next_step > 0; }));  // the base is placed
   }
 
   static void AssignFit(Bench* one, const char* fit) {
@@ -65,12 +63,13 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   Open(&killed);
   AssignFit(&killed, "H7/h6");
   ASSERT_TRUE(killed.bench.notes().Add({"Ada", "Deburr", kKeptPeg, Vec3(0, 0, 0.01)}));
-  ASSERT_TRUE(AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->notes.size() == 1; }))
-      << "without any other change";
+  ASSERT_TRUE(killed.log.AwaitTrue([this] {
+    return LoadWork(file_) && LoadWork(file_)->notes.size() == 1;
+  })) << "without any other change";
   ASSERT_TRUE(killed.bench.demo().DoNext());
-  ASSERT_TRUE(AwaitTrue([this] { return KeptPlacement() == Placement::kPlaced; }));
-  ASSERT_TRUE(AwaitTrue([&] { return !killed.bench.live().is_demo(); }));
-  ASSERT_TRUE(AwaitTrue([&] {
+  ASSERT_TRUE(killed.log.AwaitTrue([this] { return KeptPlacement() == Placement::kPlaced; }));
+  ASSERT_TRUE(killed.log.AwaitTrue([&] { return !killed.bench.live().is_demo(); }));
+  ASSERT_TRUE(killed.log.AwaitTrue([&] {
     const auto work = LoadWork(file_);
     return work && work->state.next_step == killed.bench.live().state().next_step;
   }));
@@ -100,7 +99,7 @@ TEST_F(KeptWorkTest, GoesOnWhereAProgramWasThatWasKilled) {
   EXPECT_EQ(next.bench.notes().List()[0]["text"], "Deburr");
   EXPECT_EQ(next.bench.notes().List()[0]["occurrence"], kKeptPeg.index());
   EXPECT_EQ(next.bench.MakeCatchUpEvents().back()["event"], "resumed");
-  ASSERT_TRUE(AwaitTrue([this] { return LoadWork(folder_ / "next.json").has_value(); }));
+  ASSERT_TRUE(next.log.AwaitTrue([this] { return LoadWork(folder_ / "next.json").has_value(); }));
   EXPECT_EQ(LoadWork(folder_ / "next.json")->edits, work->edits);
 }
 
@@ -108,9 +107,10 @@ TEST_F(KeptWorkTest, WhatWasUndoneIsNotDoneAgain) {
   Bench one(file_);
   Open(&one);
   AssignFit(&one, "H7/h6");
-  ASSERT_TRUE(AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
+  ASSERT_TRUE(
+      one.log.AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
   ASSERT_TRUE(one.bench.edits().Undo());
-  EXPECT_TRUE(AwaitTrue([this] { return LoadWork(file_)->edits.empty(); }));
+  EXPECT_TRUE(one.log.AwaitTrue([this] { return LoadWork(file_)->edits.empty(); }));
 }
 
 TEST_F(KeptWorkTest, PartInTheHandIsWhereItWasBefore) {
@@ -119,7 +119,7 @@ TEST_F(KeptWorkTest, PartInTheHandIsWhereItWasBefore) {
   const spatial::Pose X_WB = one.bench.live().state().parts[kKeptPeg.index()].X_WB;
   const auto taken = one.bench.hands().Take(0, kKeptPeg);
   ASSERT_TRUE(taken.has_value());
-  ASSERT_TRUE(AwaitTrue([&] {
+  ASSERT_TRUE(one.log.AwaitTrue([&] {
     one.bench.hands().Move(0, taken->X_WH, true);
     return one.bench.live().state().parts[kKeptPeg.index()].placement == Placement::kHeld;
   }));

@@ -16,6 +16,7 @@
 #include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 #include "studio/server.h"
+#include "studio/session_pace.h"
 #include "studio/test/raw_client.h"
 #include "studio/test/small_bench.h"
 
@@ -28,12 +29,20 @@ inline constexpr std::uint64_t kMaxUpload = 10'000;  // [bytes]
 /** A server on a free port, with nothing open. */
 class ServerTest : public ::testing::Test {
  protected:
-  ServerTest() : ServerTest(ServerOptions()) {}
+  ServerTest() : ServerTest(MakePatient()) {}
+
+  /** A server that waits for its clients as long as no test does. */
+  static ServerOptions MakePatient() {
+    ServerOptions options;
+    options.patience = std::chrono::hours(1);
+    return options;
+  }
 
   explicit ServerTest(ServerOptions options) : is_tls_(options.tls.has_value()) {
     options.upload_folder = folder_;
     options.max_upload = kMaxUpload;
-    bench_ = std::make_unique<Workbench>(testing::SmallBench());
+    bench_ = std::make_unique<Workbench>(testing::SmallBench(&clock_));
+    driver_ = std::make_unique<ClockDriver>(&clock_, SessionPace(&bench_->live()));
     server_ = std::make_unique<Server>(
         bench_.get(), std::vector<Example>{{"peg", "Peg", "a peg", "peg.step"}}, options);
     started_ = server_->Start().has_value();
@@ -51,6 +60,7 @@ class ServerTest : public ::testing::Test {
       bench_->Stop();
       server_->Stop();
       server_.reset();
+      driver_.reset();
     }
   }
 
@@ -111,7 +121,7 @@ class ServerTest : public ::testing::Test {
 
   /** Waits for the next text message that fits; null when none came. */
   static Json Await(RawClient* client, const std::function<bool(const Json&)>& fits) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(2);  // no claim
     while (std::chrono::steady_clock::now() < until) {  // statuses come for ever
       const auto message = client->ReadMessage();
       if (!message) {
@@ -162,7 +172,9 @@ class ServerTest : public ::testing::Test {
   const std::filesystem::path folder_{temporary_.path()};
   const bool is_tls_;
   std::filesystem::path trusted_;
+  SteeredClock clock_;
   std::unique_ptr<Workbench> bench_;
+  std::unique_ptr<ClockDriver> driver_;
   std::unique_ptr<Server> server_;
   std::map<Role, std::string> cookies_;
   bool started_{false};

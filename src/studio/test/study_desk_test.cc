@@ -15,7 +15,6 @@
 #include <gtest/gtest.h>
 
 #include "base/scratch_folder.h"
-#include "base/test/await_true.h"
 #include "simulation/test/small_products.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
@@ -96,7 +95,7 @@ bool IsSome(const std::array<float, kSize>& components) {
 /** Hub, bench and desk, driven by the test's thread alone, as by the server's. */
 class StudyDeskTest : public ::testing::Test {
  protected:
-  StudyDeskTest() : bench_(testing::SmallBench()), hub_(&bench_, {}) {
+  StudyDeskTest() : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
     Open(false);
   }
@@ -129,7 +128,7 @@ class StudyDeskTest : public ::testing::Test {
   /** Passes on what the bench tells until an event has come, as the server does. */
   void PumpUntil(const std::string& name) {
     for (;;) {
-      const auto event = log_.Await([](const Json&) { return true; }, pumped_, 60);
+      const auto event = log_.Await([](const Json&) { return true; }, pumped_);
       ASSERT_TRUE(event) << "waiting for " << name;
       ++pumped_;
       hub_.Broadcast(*event);
@@ -175,8 +174,8 @@ class StudyDeskTest : public ::testing::Test {
 
   /** Of the trial on the bench [s]. */
   void AwaitElapsed(double seconds) {
-    ASSERT_TRUE(hvas::testing::AwaitTrue(
-        [&] { return bench_.trials().trial()->watch().elapsed_s() >= seconds; }));
+    ASSERT_TRUE(
+        log_.AwaitTrue([&] { return bench_.trials().trial()->watch().elapsed_s() >= seconds; }));
   }
 
   std::string Phase() {

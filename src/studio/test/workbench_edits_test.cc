@@ -4,13 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "studio/test/workbench_fixture.h"
 
 namespace hvas::studio {
 namespace {
 
-using hvas::testing::AwaitTrue;
 using simulation::Placement;
 using testing::kPeg;
 
@@ -55,7 +53,7 @@ TEST_F(WorkbenchEditsTest, ChangeOfTheProductIsCompiledAndUndone) {
   EXPECT_EQ((*log_.Await("scene", start))["why"], "change");
   EXPECT_EQ(bench_.live().scene()->model->product->name, "changed");
   EXPECT_EQ(before->model->product->name, "rig");  // a model is compiled, never edited
-  ASSERT_TRUE(AwaitTrue([&] { return bench_.live().state().parts.size() == 2; }));
+  ASSERT_TRUE(log_.AwaitTrue([&] { return bench_.live().state().parts.size() == 2; }));
   start = log_.size();
   ASSERT_TRUE(bench_.edits().Undo());
   EXPECT_EQ((*log_.Await("scene", start))["why"], "undone");

@@ -1,18 +1,15 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "studio/test/small_bench.h"
 #include "studio/workbench.h"
 
@@ -22,10 +19,10 @@ inline constexpr std::size_t kBlock = 0;
 inline constexpr std::size_t kPeg = 1;
 inline constexpr int kSeated = 5;  // docs/protocol.md
 
-/** A live assembly of a block and a peg, in real time. */
+/** A live assembly of a block and a peg, in the time of its log. */
 class WorkbenchFixture : public ::testing::Test {
  protected:
-  WorkbenchFixture() : bench_(SmallBench()) {
+  WorkbenchFixture() : bench_(SmallBench(log_.clock())) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
   }
 
@@ -45,7 +42,7 @@ class WorkbenchFixture : public ::testing::Test {
   }
 
   bool AwaitPlacement(std::size_t i, simulation::Placement wanted) {
-    return hvas::testing::AwaitTrue([&] { return PlacementOf(i) == wanted; });
+    return log_.AwaitTrue([&] { return PlacementOf(i) == wanted; });
   }
 
   std::optional<Json> AwaitPlacementEvent(const std::string& placement, std::size_t start) {
@@ -66,12 +63,13 @@ class WorkbenchFixture : public ::testing::Test {
     X_WH_ = taken->X_WH;
     X_HB_ = X_WH_.Inverse() * X_WB_start_;
     bench_.hands().Move(hand_, X_WH_, true);  // as a client does that does not wait for the event
-    ASSERT_TRUE(log_.Await(
-        [&](const Json& event) {
-          bench_.hands().Move(hand_, X_WH_, true);
-          return event["event"] == "taken" && event["occurrence"] == kPeg;
-        },
-        start));
+    const auto is_taken = [](const Json& event) {
+      return event["event"] == "taken" && event["occurrence"] == kPeg;
+    };
+    ASSERT_TRUE(log_.AwaitTrue([&] {
+      bench_.hands().Move(hand_, X_WH_, true);
+      return log_.Find(is_taken, start).has_value();
+    }));
   }
 
   /** Moves the peg straight to a pose, with 100 inputs a second. Ends early when the state is
@@ -87,19 +85,18 @@ class WorkbenchFixture : public ::testing::Test {
       X_WH_ = {spatial::RotationFromVector(Vec3(part * turn)) * from.q(),
                Vec3(from.p() + part * (to.p() - from.p()))};
       bench_.hands().Move(hand_, X_WH_, true);
-      if (state >= 0 && AwaitState(state, start, 0.01)) {
+      log_.Pass(0.01);
+      if (state >= 0 && HasState(state, start)) {
         return;
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
 
-  bool AwaitState(int state, std::size_t start, double seconds) {
-    return log_
-        .Await(
-            [&](const Json& event) { return event["event"] == "state" && event["state"] == state; },
-            start, seconds)
-        .has_value();
+  [[nodiscard]] bool HasState(int state, std::size_t start) const {
+    const auto fits = [&](const Json& event) {
+      return event["event"] == "state" && event["state"] == state;
+    };
+    return log_.Find(fits, start).has_value();
   }
 
   /** Moves the peg over the bore, then along its axis to the goal and a little on. */
@@ -118,13 +115,14 @@ class WorkbenchFixture : public ::testing::Test {
     constexpr double kPress = 10e-6;  // Of each input [m].
     constexpr double kFarthest = 8e-3;
     double pressed = 0;
-    for (int i = 0; i < 2000 && !AwaitState(kSeated, start, 0.01); ++i) {
+    for (int i = 0; i < 2000 && !HasState(kSeated, start); ++i) {
       const double more = std::min(kPress, kFarthest - pressed);
       pressed += more;
       X_WH_ = {X_WH_.q(), Vec3(X_WH_.p() - more * up)};
       bench_.hands().Move(hand_, X_WH_, true);
+      log_.Pass(0.01);
     }
-    ASSERT_TRUE(AwaitState(kSeated, start, 0)) << DescribeHand();
+    ASSERT_TRUE(HasState(kSeated, start)) << DescribeHand();
   }
 
   /** Describes the hand and the part, for a failure that is not seen again. */

@@ -6,14 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "device/driver.h"
 #include "studio/test/workbench_fixture.h"
 
 namespace hvas::studio {
 namespace {
 
-using hvas::testing::AwaitTrue;
 using product::OccurrenceId;
 using simulation::Placement;
 using spatial::Pose;
@@ -57,7 +55,7 @@ TEST_F(WorkbenchHandsTest, X16SeatedPartIsTakenOutAgain) {
   ASSERT_FALSE(HasFatalFailure());
   EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
   EXPECT_TRUE(
-      AwaitTrue([this] { return bench_.live().state().next_step == 1; }));  // to be done again
+      log_.AwaitTrue([this] { return bench_.live().state().next_step == 1; }));  // to be done again
   ASSERT_TRUE(bench_.edits().Undo());
   EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
 }
@@ -68,13 +66,13 @@ TEST_F(WorkbenchHandsTest, HeldPartStaysAndTheForceGoesWhenNothingIsHeard) {  //
   MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, 0.05))), 0.6);
   // Nobody sends anything any more: the operator is gone.
   auto before = bench_.live().frame().frame;
-  EXPECT_TRUE(AwaitTrue([&] {
+  EXPECT_TRUE(log_.AwaitTrue([&] {
     before = bench_.live().frame().frame;
     return before.ticks.size() == 1 && before.ticks[0].F_H_W.f.norm() == 0 &&
            before.ticks[0].F_H_W.t.norm() == 0;
   }));
   auto after = before;
-  EXPECT_TRUE(AwaitTrue([&] {
+  EXPECT_TRUE(log_.AwaitTrue([&] {
     after = bench_.live().frame().frame;
     return after.t_ns > before.t_ns + 300'000'000;
   }));
@@ -103,7 +101,7 @@ TEST_F(WorkbenchHandsTest, SecondHandDoesWhatTheFirstOneDoes) {  // N11: two han
   ASSERT_TRUE(bench_.edits().Undo());
   ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kLoose));
   ASSERT_TRUE(bench_.hands().SetCount(1));
-  EXPECT_TRUE(AwaitTrue([this] { return bench_.live().frame().frame.ticks.size() == 1; }));
+  EXPECT_TRUE(log_.AwaitTrue([this] { return bench_.live().frame().frame.ticks.size() == 1; }));
 }
 
 TEST_F(WorkbenchHandsTest, PartGoesFromOneHandIntoTheOtherBeforeItFalls) {
@@ -118,7 +116,7 @@ TEST_F(WorkbenchHandsTest, PartGoesFromOneHandIntoTheOtherBeforeItFalls) {
   MovePeg(Pose(X_WB_start_.q(), Vec3(X_WB_start_.p() + Vec3(0, 0, 0.08))), 0.8);
   const double height = bench_.live().frame().frame.X_WB[kPeg].p().z();
   ASSERT_TRUE(bench_.hands().HandOver(0, 1));
-  ASSERT_TRUE(AwaitTrue([this] {
+  ASSERT_TRUE(log_.AwaitTrue([this] {
     const auto ticks = bench_.live().frame().frame.ticks;
     return ticks.size() == 2 && ticks[1].occurrence.is_valid() && !ticks[0].occurrence.is_valid();
   }));
@@ -137,7 +135,8 @@ TEST_F(WorkbenchHandsTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.hands().UseDevice(0, kAddress, 0));
   ASSERT_TRUE(AwaitDevice(0, kAddress, start));
-  EXPECT_TRUE(AwaitTrue([this] { return bench_.hands().Describe()[0]["condition"] == "ready"; }));
+  EXPECT_TRUE(
+      log_.AwaitTrue([this] { return bench_.hands().Describe()[0]["condition"] == "ready"; }));
   const Json hand = bench_.hands().Describe()[0];
   EXPECT_EQ(hand["device"]["is_emulated"], true);
   EXPECT_GT(hand["device"]["max_force_n"], 1);

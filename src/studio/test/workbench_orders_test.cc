@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 #include "studio/saved_work.h"
 #include "studio/test/small_bench.h"
@@ -17,7 +16,6 @@ namespace hvas::studio {
 namespace {
 
 namespace fs = std::filesystem;
-using hvas::testing::AwaitTrue;
 using product::OccurrenceId;
 
 /** Peg with a collar, clamp over it and cap on it, in a block. */
@@ -124,8 +122,8 @@ TEST_F(WorkbenchOrdersTest, TheOrderIsPartOfTheWorkThatIsKept) {
     one.Open();
     orders = ListOrders(&one);
     ASSERT_TRUE(one.bench.orders().Set(one.Find(orders[1])));
-    ASSERT_TRUE(
-        AwaitTrue([this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
+    ASSERT_TRUE(one.log.AwaitTrue(
+        [this] { return LoadWork(file_) && LoadWork(file_)->edits.size() == 1; }));
   }
   const auto work = LoadWork(file_);
   ASSERT_TRUE(work.has_value()) << work.error().ToString();

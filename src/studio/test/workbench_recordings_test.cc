@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "record/reader.h"
 #include "session/replay.h"
 #include "studio/frame_codec.h"
@@ -17,7 +16,6 @@
 namespace hvas::studio {
 namespace {
 
-using hvas::testing::AwaitTrue;
 using simulation::Placement;
 using testing::kPeg;
 
@@ -63,7 +61,7 @@ TEST_F(WorkbenchRecordingsTest, X14RecordingIsListedPlayedAndRunAgainBitForBit) 
   ASSERT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
   const std::int64_t worked_ns = bench_.live().frame().frame.t_ns;
   ASSERT_TRUE(bench_.edits().Undo());  // another stretch
-  ASSERT_TRUE(AwaitTrue([&] {
+  ASSERT_TRUE(log_.AwaitTrue([&] {
     const std::int64_t t_ns = bench_.live().frame().frame.t_ns;
     return t_ns > 200'000'000 && t_ns < worked_ns;
   }));

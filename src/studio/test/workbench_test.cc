@@ -12,13 +12,11 @@
 
 #include <gtest/gtest.h>
 
-#include "base/test/await_true.h"
 #include "studio/test/workbench_fixture.h"
 
 namespace hvas::studio {
 namespace {
 
-using hvas::testing::AwaitTrue;
 using simulation::Placement;
 using spatial::Pose;
 using testing::EventLog;
@@ -34,7 +32,7 @@ TEST_F(SceneOpenerTest, OpeningTellsOfItsProgressThenOfTheScene) {
   EXPECT_EQ(scene->model->bodies.size(), 2u);
   EXPECT_EQ(scene->glb->substr(0, 4), "glTF");
   EXPECT_EQ(bench_.live().state().parts.size(), 2u);
-  EXPECT_TRUE(AwaitTrue([this] { return bench_.live().frame().epoch == 1; }));
+  EXPECT_TRUE(log_.AwaitTrue([this] { return bench_.live().frame().epoch == 1; }));
 }
 
 TEST_F(SceneOpenerTest, WhatCannotBeOpenedLeavesWhatIsOpen) {
@@ -54,8 +52,8 @@ class FirstPartsTest : public ::testing::Test {
   static constexpr std::size_t kCollar = 2;
 
   FirstPartsTest()
-      : bench_([] {
-          WorkbenchOptions options = testing::SmallBench();
+      : bench_([this] {
+          WorkbenchOptions options = testing::SmallBench(log_.clock());
           options.scenes.shape_cache = nullptr;
           options.scenes.least_gain = {};
           return options;
@@ -73,12 +71,8 @@ class FirstPartsTest : public ::testing::Test {
 
   void TearDown() override { bench_.Stop(); }
 
-  std::optional<Json> AwaitWhole(double seconds) {
-    return log_.Await(
-        [](const Json& event) {
-          return event["event"] == "scene" && event["why"] == "all parts are ready";
-        },
-        0, seconds);
+  static bool IsWhole(const Json& event) {
+    return event["event"] == "scene" && event["why"] == "all parts are ready";
   }
 
   EventLog log_;
@@ -94,7 +88,7 @@ TEST_F(FirstPartsTest, OnlyWhatIsReadyCanBeTakenUntilAllIs) {
     taken.push_back(bench_.hands().Take(0, product::OccurrenceId(kCollar)));
   };
   bench_.opener().Open("collar.step", "collar");
-  ASSERT_TRUE(AwaitWhole(60));
+  ASSERT_TRUE(log_.Await(IsWhole));
   ASSERT_EQ(taken.size(), 1u);
   ASSERT_FALSE(taken[0]);
   EXPECT_EQ(taken[0].error().message, "the part is still being prepared");
@@ -113,10 +107,11 @@ TEST_F(FirstPartsTest, APartInTheHandIsNotTakenAway) {
     return event["event"] == "progress" && event["stage"] == "ready";
   };
   ASSERT_TRUE(log_.Await(is_ready));
-  EXPECT_FALSE(AwaitWhole(0.3));
+  log_.Pass(0.3);
+  EXPECT_FALSE(log_.Find(IsWhole));
   EXPECT_TRUE(bench_.live().is_holding());
   ASSERT_TRUE(bench_.hands().Release(0));
-  ASSERT_TRUE(AwaitWhole(60));
+  ASSERT_TRUE(log_.Await(IsWhole));
   EXPECT_EQ(bench_.live().state().parts[kPeg].placement, Placement::kLoose);
 }
 
@@ -150,16 +145,16 @@ TEST_F(LiveSceneTest, ForcesAreOffUntilTheyAreSwitchedOn) {  // N6
     const auto frame = bench_.live().frame().frame;
     return frame.ticks.empty() ? 0.0 : frame.ticks[0].F_H_W.f.norm();
   };
-  EXPECT_TRUE(AwaitTrue([&] { return force() > 0.1; }));
+  EXPECT_TRUE(log_.AwaitTrue([&] { return force() > 0.1; }));
   bench_.live().SetForcesOff(true);
   EXPECT_TRUE(bench_.live().forces_off());
-  EXPECT_TRUE(AwaitTrue([&] { return force() == 0; }));
+  EXPECT_TRUE(log_.AwaitTrue([&] { return force() == 0; }));
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(force(), 0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    log_.Pass(0.01);
   }
   bench_.live().SetForcesOff(false);
-  EXPECT_TRUE(AwaitTrue([&] { return force() > 0.1; }));
+  EXPECT_TRUE(log_.AwaitTrue([&] { return force() > 0.1; }));
 }
 
 TEST_F(LiveSceneTest, ForcesStayOffInTheNextRun) {  // N6
@@ -173,7 +168,7 @@ TEST_F(LiveSceneTest, ForcesStayOffInTheNextRun) {  // N6
     const auto frame = bench_.live().frame().frame;
     ASSERT_EQ(frame.ticks.size(), 1u);
     EXPECT_EQ(frame.ticks[0].F_H_W.f.norm(), 0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    log_.Pass(0.01);
   }
 }
 
@@ -181,7 +176,7 @@ class WorkbenchDemoTest : public testing::WorkbenchFixture {};
 
 TEST_F(WorkbenchDemoTest, SimulatedPersonDoesTheNextStep) {
   OpenPeg();
-  ASSERT_TRUE(AwaitTrue([this] { return bench_.live().state().next_step == 1; }));
+  ASSERT_TRUE(log_.AwaitTrue([this] { return bench_.live().state().next_step == 1; }));
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.demo().DoNext());
   ASSERT_TRUE(AwaitPlacementEvent("placed", start));
@@ -194,7 +189,7 @@ TEST_F(WorkbenchDemoTest, SimulatedPersonDoesTheNextStep) {
 
 TEST_F(WorkbenchDemoTest, X16SimulatedPersonGetsAPartOutAgain) {
   OpenPeg();
-  ASSERT_TRUE(AwaitTrue([this] { return bench_.live().state().next_step == 1; }));
+  ASSERT_TRUE(log_.AwaitTrue([this] { return bench_.live().state().next_step == 1; }));
   std::size_t start = log_.size();
   const auto await_end = [&] {
     return log_.Await(
@@ -240,7 +235,8 @@ TEST_F(WorkbenchTest, StopsWhileAFileIsBeingOpened) {
 }
 
 TEST(WorkbenchStopTest, WhatHasNotBegunIsDropped) {
-  WorkbenchOptions options = testing::SmallBench();
+  EventLog log;
+  WorkbenchOptions options = testing::SmallBench(log.clock());
   options.scenes.load = [load = options.scenes.load](
                             const std::filesystem::path& file, const cad::ProgressFn& progress,
                             const std::stop_token& stop, Diagnostics* diagnostics) {
@@ -250,7 +246,6 @@ TEST(WorkbenchStopTest, WhatHasNotBegunIsDropped) {
     return load(file, progress, stop, diagnostics);
   };
   Workbench bench(options);
-  EventLog log;
   bench.on_event = [&log](Json event) { log.Add(std::move(event)); };
   bench.opener().Open("peg.step", "peg");
   ASSERT_TRUE(log.Await("scene"));

@@ -4,6 +4,9 @@ import { nowMs } from "../protocol/frame_store";
 import type { RoomHand } from "../view3d/vr/host";
 import { leadsHand, store, studio, ui, view, viewport } from "./app_state";
 
+/** Of the session, from one frame to the next (`LiveRun`). */
+const kFrameMs = 1000 / 60;
+
 interface Seen {
   x: number;
   y: number;
@@ -13,7 +16,8 @@ interface Seen {
 export interface StudioHooks {
   readonly framesDrawn: number;
   state(): unknown;
-  /** On a clock that goes on as the server's frames come [ms]; 0 before the first one. */
+  /** How far the session has gone on while this page got its frames, at least [ms]: what a slow machine leaves out does
+   not count, however long it took. */
   readonly sessionMs: number;
   /** Until the server has answered, and with it all that this page has sent before. */
   hasAnswered(): Promise<void>;
@@ -164,7 +168,7 @@ export function exposeHooks(): void {
       return viewport.value?.framesDrawn ?? 0;
     },
     get sessionMs() {
-      return viewport.value?.live?.sentMs ?? 0;
+      return (studio.liveFrames?.messagesReceived ?? 0) * kFrameMs;
     },
     hasAnswered: async () => void (await studio.command({ command: "status" })),
     state: () => ({
