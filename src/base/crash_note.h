@@ -2,8 +2,9 @@
 
 #include <string_view>
 
-/** What the program was doing, for the message that it writes when it crashes. Each setter keeps the first 511 bytes of a text
- and allocates nothing. Any thread may call them; a crash meanwhile may show a mixture of two texts. */
+/** What the program was doing, for the message that it writes when it crashes. Each setter keeps
+ the first 511 bytes of a text and allocates nothing. Any thread may call them; a crash meanwhile
+ may show a mixture of two texts. */
 namespace hvas {
 
 /** The command with its arguments, or the request that is being served: "assemble bushing.step". */
@@ -15,8 +16,8 @@ void NoteStage(std::string_view stage) noexcept;
 /** The file into which the session is being recorded. Empty: none. */
 void NoteRecord(std::string_view path) noexcept;
 
-/** Writes to standard error that the program has crashed by this signal, what it was doing, and where the record lies.
- Async-signal-safe. */
+/** Writes to standard error that the program has crashed by this signal, what it was doing, and
+ where the record lies. Async-signal-safe. */
 void WriteCrashNote(int signal) noexcept;
 
 }  // namespace hvas

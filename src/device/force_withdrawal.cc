@@ -23,7 +23,8 @@ constexpr int kHandOnPeriods = 100;
 constexpr std::chrono::milliseconds kHandOnPeriod{1};
 constexpr std::array kCrashes{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
 constexpr std::array kEnds{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
-constexpr std::size_t kHandlerStack = 64 * 1024;  // [bytes] A choice: the handler's frames are small.
+constexpr std::size_t kHandlerStack =
+    64 * 1024;  // [bytes] A choice: the handler's frames are small.
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the end of the process is
 // global.
