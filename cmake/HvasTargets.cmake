@@ -66,21 +66,59 @@ function(hvas_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# hvas_test(<name> SOURCES a_test.cc ... [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s] [RUNS]): one GoogleTest program, one
-# ctest entry. Those of the highest cost begin first, so that no long one is left to run alone. Labels say where a test runs
-# (see ./test): `unit`, the default, is fast and needs no other room's data; `e2e` takes longer, or starts programs;
-# `numeric` only compares figures, so that sanitizers have nothing to see; `thread` runs under the thread sanitizer; `smoke`
-# runs after every change; `release` in `./test all` only. A test with RUNS only starts programs or calls rooms, which do
-# the work: it is not optimised.
+# hvas_list_suites(<out> a_test.cc ...): the test suites of these sources, as a filter of GoogleTest.
+function(hvas_list_suites out)
+  set(filter)
+  foreach(source ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+    file(STRINGS ${source} lines REGEX "^(TYPED_)?TEST(_[FP])?\\(")
+    foreach(line ${lines})
+      string(REGEX REPLACE "^[A-Z_]*\\(([A-Za-z0-9_]+),.*" "\\1" suite "${line}")
+      list(APPEND filter "${suite}.*" "*/${suite}.*" "${suite}/*")
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES filter)
+  list(JOIN filter ":" filter)
+  set(${out} "${filter}" PARENT_SCOPE)
+endfunction()
+
+# hvas_test(<name> SOURCES a_test.cc ... [IN program] [DEPS ...] [LABELS ...] [TIMEOUT s] [COST s] [RUNS]): one ctest entry, and
+# its GoogleTest program. With IN the entry is a part of a program that another test names, which stands after all its
+# parts and runs what they do not: a program takes seconds to compile beside what is in it. Those of the highest cost begin
+# first, so that no long one is left to run alone. Labels say where a test runs (see ./test): `unit`, the default, is fast
+# and needs no other room's data; `e2e` takes longer, or starts programs; `numeric` only compares figures, so that
+# sanitizers have nothing to see; `thread` runs under the thread sanitizer; `smoke` runs after every change; `release` in
+# `./test all` only. A test with RUNS only starts programs or calls rooms, which do the work: it is not optimised.
 function(hvas_test name)
-  cmake_parse_arguments(ARG "RUNS" "TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_DEPS} GTest::gtest GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE HVAS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  if(ARG_RUNS AND NOT HVAS_SANITIZE)
-    hvas_compile_as(${name} runs)
+  cmake_parse_arguments(ARG "RUNS" "IN;TIMEOUT;COST" "SOURCES;DEPS;LABELS" ${ARGN})
+  set(program ${name})
+  if(ARG_IN)
+    set(program ${ARG_IN})
+  endif()
+  if(NOT TARGET ${program})
+    add_executable(${program})
+    target_link_libraries(${program} PRIVATE GTest::gtest GTest::gtest_main)
+    target_compile_definitions(${program} PRIVATE HVAS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    if(ARG_RUNS AND NOT HVAS_SANITIZE)
+      hvas_compile_as(${program} runs)
+    else()
+      hvas_compile_as(${program} tests)
+    endif()
+  endif()
+  target_sources(${program} PRIVATE ${ARG_SOURCES})
+  target_link_libraries(${program} PRIVATE ${ARG_DEPS})
+  set(filter)
+  if(ARG_IN)
+    hvas_list_suites(suites ${ARG_SOURCES})
+    set_property(TARGET ${program} APPEND PROPERTY HVAS_PARTS "${suites}")
+    set(filter "--gtest_filter=${suites}:-*ReleaseTest.*")
+    add_custom_target(${name} DEPENDS ${program})  # Every test can be built by its name.
   else()
-    hvas_compile_as(${name} tests)
+    get_target_property(parts ${program} HVAS_PARTS)
+    if(parts)
+      list(JOIN parts ":" parts)
+      set(filter "--gtest_filter=-${parts}:*ReleaseTest.*")
+    endif()
   endif()
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
@@ -91,7 +129,7 @@ function(hvas_test name)
   if(HVAS_SANITIZE)
     math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")
   endif()
-  add_test(NAME ${name} COMMAND ${name})
+  add_test(NAME ${name} COMMAND ${program} ${filter})
   if(ARG_COST)
     set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
   endif()

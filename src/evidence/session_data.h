@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "record/reader.h"
 
 /** What exports and the report take out of a record. */

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "product/product.h"
+#include "product/mate.h"
 
 namespace hvas::exchange {
 

@@ -15,7 +15,7 @@
 #include "haptics/giving_curve.h"
 #include "haptics/rigid_group.h"
 #include "mates/capture.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "spatial/pose.h"
 
 namespace hvas::haptics {

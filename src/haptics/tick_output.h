@@ -6,7 +6,7 @@
 #include "contact/scene.h"
 #include "haptics/passivity_controller.h"
 #include "haptics/workspace_mapping.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "spatial/pose.h"
 
 namespace hvas::haptics {

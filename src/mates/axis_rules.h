@@ -7,7 +7,7 @@
 
 #include "base/work_watch.h"
 #include "mates/limits.h"
-#include "product/product.h"
+#include "product/ids.h"
 
 namespace hvas::mates {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "product/product.h"
+#include "product/mate.h"
 
 /** Recognition of mates while moving (X8, W7): how far two sides of a mate are from each other, and
  whether that is near enough to be captured. All functions are RT-safe.

@@ -4,7 +4,7 @@
 
 #include "base/result.h"
 #include "fits/iso286.h"
-#include "product/product.h"
+#include "product/mate.h"
 
 namespace hvas::mates {
 

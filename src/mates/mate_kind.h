@@ -1,6 +1,6 @@
 #pragma once
 
-#include "product/product.h"
+#include "product/mate.h"
 
 /** What the kinds of mates ask of the frames M (placed) and N (held). Each function is a switch
  without a default, so that the compiler names it when a kind is added. */

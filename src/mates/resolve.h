@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "product/product.h"
+#include "product/mate.h"
 
 /** Exact resolution of mates (X9), for any set of them and by the motions that they leave free.
 

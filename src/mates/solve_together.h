@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mates/resolve.h"
-#include "product/product.h"
+#include "product/mate.h"
 
 /** Mates between several bodies, resolved together: chains and closed loops, which `Resolve` cannot
  do for one held part at a time (X12, docs/algorithms/mates.md, section 6). Not for the loops. */

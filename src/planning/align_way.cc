@@ -23,8 +23,7 @@ using spatial::Pose;
 // tilt and stray so far, engaged by its width. Choices.
 constexpr double kMostTilt = 0.25;   // [rad]
 constexpr double kMostAside = 0.05;  // Of the part's size.
-constexpr double kClear = 0.02;      // Of the part's size: farther than this from others is clear.
-constexpr double kMostMove = 0.25;   // Of that, at once, as faces turn: a choice.
+constexpr double kMostMove = 0.25;   // Of the clear distance, at once, as faces turn: a choice.
 constexpr int kCenterings = 12;      // Until the middle of a slot is found: a choice.
 constexpr double kStayWeight =
     0.02;  // Weight of staying, beside that of a pair of faces: a choice.
@@ -66,7 +65,7 @@ std::optional<Pose> Align(const Probe& probe, const ScrewAxis& axis, const Pose&
 /** Moves a pose along the axis and about it to where the part is clear of others, as far as it can,
  into the middle between walls: the least squares of what it lacks of being clear. */
 Pose Center(Probe* probe, const ScrewAxis& axis, const Pose& X_start) {
-  const double clear = kClear * probe->size();
+  const double clear = probe->clear_distance();
   const double g = probe->gyration();
   Pose X = X_start;
   for (int step = 0; step < kCenterings; ++step) {

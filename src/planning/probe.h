@@ -60,6 +60,9 @@ class Probe {
 
   [[nodiscard]] double size() const { return size_; }  ///< Diagonal of the part's box [m].
 
+  /** Farther than this from others is clear [m]: a fiftieth of the part's size, a choice. */
+  [[nodiscard]] double clear_distance() const { return 0.02 * size(); }
+
   [[nodiscard]] double reach() const { return reach_; }  ///< Farthest corner from the centre [m].
 
   [[nodiscard]] double gyration() const {

@@ -16,7 +16,6 @@ namespace {
 
 using spatial::Pose;
 
-constexpr double kClear = 0.02;       // Of the part's size: farther than this from others is clear.
 constexpr double kMovedApart = 0.04;  // Of the part's size: the poses that are moved.
 constexpr int kWideningSweeps =
     6;                         // Over all poses; further ones gain less than a tenth: a choice.
@@ -24,7 +23,8 @@ constexpr int kDivisions = 2;  // Of the screws beside narrow places: 1 % of the
 constexpr int kHalvings = 3;   // Of a move that does not help: a choice.
 // Weight of staying between the neighbours, beside that of a pair of faces: choices.
 constexpr double kStayBetween = 0.05;
-constexpr double kMostMove = 0.5;  // Of kClear: a pose moves no further at once, as planes turn.
+constexpr double kMostWidening =
+    0.5;  // Of the clear distance: a pose moves no further at once, as planes turn.
 
 /** What is near at a pose, by pairs of faces, so that each counts once whatever its samples. */
 struct Nearness {
@@ -34,7 +34,7 @@ struct Nearness {
 
 // Between two walls the clearing leads to the middle. Turns count as lengths.
 Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_middle) {
-  const double clear = kClear * probe.size();
+  const double clear = probe.clear_distance();
   const double g = probe.gyration();
   const Vec3 centre_W = X_WB * probe.centre_B();
   std::map<FacePair, std::pair<int, double>> pairs;  // Number of contacts, least distance.
@@ -57,7 +57,7 @@ Nearness Measure(const Probe& probe, const Pose& X_WB, const Displacement& to_mi
     right += weight * (clear - c.distance) * row;
   }
   const Vec6 d = normal.ldlt().solve(right);
-  const double scale = std::min(1.0, kMostMove * clear / std::max(d.norm(), 1e-12));
+  const double scale = std::min(1.0, kMostWidening * clear / std::max(d.norm(), 1e-12));
   nearness.clearing = {Vec3(scale * d.tail<3>() / g), Vec3(scale * d.head<3>())};
   return nearness;
 }
@@ -139,7 +139,7 @@ class Widening {
   double step_;
   std::uint64_t last_;
   sweep::Path way_;
-  double clear_{kClear * probe_.size()};
+  double clear_{probe_.clear_distance()};
 };
 
 }  // namespace

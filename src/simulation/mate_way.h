@@ -1,6 +1,6 @@
 #pragma once
 
-#include "product/product.h"
+#include "product/mate.h"
 #include "simulation/sequence.h"
 
 namespace hvas::simulation {

@@ -7,7 +7,7 @@
 #include "contact/scene.h"
 #include "device/device.h"
 #include "haptics/tick_output.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "simulation/flight_recorder.h"
 #include "spatial/pose.h"
 

@@ -12,7 +12,7 @@
 namespace hvas::studio {
 namespace {
 
-Json ToJson(const PickedFace& face) {
+Json DescribeFace(const PickedFace& face) {
   return {{"occurrence", face.occurrence.value()}, {"face", face.face.value()}};
 }
 
@@ -49,8 +49,8 @@ Edit MakeEdit(const protocol::AddMateCommand& command) {
   };
   return Edit{"add mate",
               {{"command", command.kName},
-               {"a", ToJson(command.a)},
-               {"b", ToJson(command.b)},
+               {"a", DescribeFace(command.a)},
+               {"b", DescribeFace(command.b)},
                {"fit", command.fit}},
               add};
 }

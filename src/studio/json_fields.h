@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "session/json_values.h"
 #include "studio/measure.h"
 #include "study/study_session.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "product/product.h"
+#include "product/ids.h"
 #include "simulation/sequence.h"
 #include "simulation/table_subassembly.h"
 #include "studio/live_run.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "product/product.h"
+#include "product/ids.h"
 #include "studio/event_bus.h"
 #include "studio/json.h"
 #include "studio/live_scene.h"

@@ -13,7 +13,7 @@
 #include "haptics/options.h"
 #include "haptics/paper_guidance.h"
 #include "mates/capture.h"
-#include "product/product.h"
+#include "product/mate.h"
 
 /** Protocol of a study (N9): conditions, trials and their order, questions, consent. The file is
  YAML or JSON; docs/studies.md and data/schemas/study.schema.json define its format. */

@@ -54,7 +54,7 @@ std::string List(const std::vector<Id<Tag>>& ids, std::string_view prefix = "") 
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-std::string PathOf(const Product& product, product::OccurrenceId id, std::size_t width) {
+std::string FittedPathOf(const Product& product, product::OccurrenceId id, std::size_t width) {
   return Shorten(product.occurrences[id.index()].path, width);
 }
 
@@ -369,7 +369,7 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
     }
     const std::size_t width = (CountColumns() - 14) / 2;
     fmt::print("  {} t {} r  {} - {}\n", joint.free_translations, joint.free_rotations,
-               PathOf(product, joint.a, width), PathOf(product, joint.b, width));
+               FittedPathOf(product, joint.a, width), FittedPathOf(product, joint.b, width));
     fmt::print("{}", Wrap(fmt::format("{}{}", List(joint.mates, "m"),
                                       joint.pattern_count > 1
                                           ? fmt::format("; a pattern of {}", joint.pattern_count)
@@ -383,8 +383,8 @@ void PrintJoints(const Product& product, const Selection& selection, bool is_all
         hints.Next()) {
       const std::size_t width = (CountColumns() - 16) / 2;
       fmt::print("  in line    {} - {}\n             holes with nothing through both\n",
-                 PathOf(product, alignment.a.occurrence, width),
-                 PathOf(product, alignment.b.occurrence, width));
+                 FittedPathOf(product, alignment.a.occurrence, width),
+                 FittedPathOf(product, alignment.b.occurrence, width));
     }
   }
   hints.PrintRest();
@@ -539,8 +539,8 @@ void PrintSummary(const Product& product, const Diagnostics& diagnostics) {
 void PrintMate(const Product& product, const Mate& mate, bool with_evidence) {
   const std::size_t width = (CountColumns() - 34) / 2;
   fmt::print("{:>6} {:<10} {:<11} {} <- {}\n", fmt::format("m{}", mate.id.value()), mate.key,
-             FormatKind(mate.kind), PathOf(product, mate.a.occurrence, width),
-             PathOf(product, mate.b.occurrence, width));
+             FormatKind(mate.kind), FittedPathOf(product, mate.a.occurrence, width),
+             FittedPathOf(product, mate.b.occurrence, width));
   fmt::print("{}", Wrap(DescribeMate(mate, with_evidence), 7));
 }
 

@@ -95,9 +95,9 @@ TEST(GreedyFileTest, ThousandsOfPartsAtOnePlaceAreOpenedWhenTheyAreAllowed) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "many.gltf: the file places more than 16384 parts",
                       refused.err);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "--max-parts", refused.err);
-  const auto json =
+  const auto report =
       testing::RunHvasJson({"inspect", file, "--max-parts", "20000", "--only", "diagnostics"});
-  const auto& diagnostics = json["diagnostics"];
+  const auto& diagnostics = report["diagnostics"];
   const auto duplicate = std::find_if(diagnostics.begin(), diagnostics.end(), [](const auto& item) {
     return item["code"] == "duplicate-part";
   });

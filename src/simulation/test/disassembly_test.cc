@@ -16,7 +16,7 @@ using testing::Product;
 using Names = std::vector<std::string>;
 using ::testing::IsSubstring;
 
-std::shared_ptr<const Model> Compiled(Product product) {
+std::shared_ptr<const Model> CompiledModel(Product product) {
   Diagnostics diagnostics;
   auto model =
       Compile(std::make_shared<Product>(std::move(product)), testing::FastOptions(), &diagnostics);
@@ -49,7 +49,7 @@ Names OrderOf(const Model& model, const DisassemblyPlan& plan) {
 }
 
 TEST(DisassemblyPlanTest, X16PartUnderALidWaitsForTheLid) {
-  const auto model = Compiled(testing::CoinUnderLid());
+  const auto model = CompiledModel(testing::CoinUnderLid());
   const DisassemblyPlan plan = PlanFor(*model, "coin");
   ASSERT_EQ(OrderOf(*model, plan), (Names{"lid", "coin"}));
   EXPECT_TRUE(plan.is_smallest);
@@ -64,7 +64,7 @@ TEST(DisassemblyPlanTest, X16PartUnderALidWaitsForTheLid) {
 }
 
 TEST(DisassemblyPlanTest, X16SearchThatIsEndedEarlyGivesASetAndReportsIt) {
-  const auto model = Compiled(testing::CoinUnderLid());
+  const auto model = CompiledModel(testing::CoinUnderLid());
   DisassemblyOptions options;
   options.target = Find(*model, "coin");
   options.max_sets = 0;
@@ -74,7 +74,7 @@ TEST(DisassemblyPlanTest, X16SearchThatIsEndedEarlyGivesASetAndReportsIt) {
 }
 
 TEST(DisassemblyPlanTest, X16PartsThatAreNotInTheWayStay) {
-  const auto model = Compiled(testing::CappedCollarUnderClamp());
+  const auto model = CompiledModel(testing::CappedCollarUnderClamp());
   // Taking all apart begins with the cap; the clamp does not need that.
   const DisassemblyPlan all = PlanDisassembly(*model, {});
   EXPECT_EQ(all.removals.size(), 3u);
@@ -85,7 +85,7 @@ TEST(DisassemblyPlanTest, X16PartsThatAreNotInTheWayStay) {
 }
 
 TEST(DisassemblyPlanTest, X16PartThatCannotComeOutNamesWhatItMeets) {
-  const auto model = Compiled(testing::CaptiveRing());
+  const auto model = CompiledModel(testing::CaptiveRing());
   const OccurrenceId base = FindBase(model->sequence);
   const OccurrenceId other(1 - base.index());
   DisassemblyOptions options;
@@ -117,7 +117,7 @@ struct Disassembly {
 };
 
 TEST(DisassemblyPlanTest, X16PartsThatAreNotInTheirPlaceAreNotInTheWay) {
-  const auto model = Compiled(testing::CoinUnderLid());
+  const auto model = CompiledModel(testing::CoinUnderLid());
   DisassemblyOptions options;
   options.target = Find(*model, "coin");
   options.is_in_place.assign(model->bodies.size(), true);
@@ -149,7 +149,7 @@ TEST(DisassemblyRunTest, X16PersonDrawsThePegOutAndPutsItOnTheTable) {
 
 TEST(DisassemblyRunTest, X16EachPartComesOutAfterThoseInItsWay) {
   for (const auto& model :
-       {Compiled(testing::CoinUnderLid()), Compiled(testing::CappedCollarUnderClamp())}) {
+       {CompiledModel(testing::CoinUnderLid()), CompiledModel(testing::CappedCollarUnderClamp())}) {
     const Disassembly whole(model, PlanDisassembly(*model, {}));
     EXPECT_EQ(whole.run.results().size(), model->bodies.size() - 1);
     for (const PartResult& part : whole.run.results()) {

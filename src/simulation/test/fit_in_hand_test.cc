@@ -21,7 +21,6 @@ using haptics::testing::Above;
 using haptics::testing::kDt;
 using haptics::testing::kLength;
 using haptics::testing::MakeFit;
-using haptics::testing::Rig;
 
 /** One tick of a hold. */
 struct Moment {
@@ -77,10 +76,10 @@ class Trial {
     return moments;
   }
 
-  [[nodiscard]] const Rig& rig() const { return rig_; }
+  [[nodiscard]] const haptics::testing::Rig& rig() const { return rig_; }
 
  private:
-  Rig rig_;
+  haptics::testing::Rig rig_;
   SimulatedPerson person_;
 };
 

@@ -18,7 +18,7 @@ using product::Product;
 
 constexpr double kRadius = 20e-3;  // W7's rig
 constexpr double kHub = 40e-3;
-constexpr double kLength = 50e-3;
+constexpr double kMateLength = 50e-3;
 
 /** A bore of W7's size in a hub, and a shaft, as features only. */
 Product Rig(const std::string& code) {
@@ -26,7 +26,7 @@ Product Rig(const std::string& code) {
   product.parts.resize(2);
   product::Part& hub = product.parts[0];
   hub.box_B.Add(Vec3(-kHub, -kHub, 0));
-  hub.box_B.Add(Vec3(kHub, kHub, kLength));
+  hub.box_B.Add(Vec3(kHub, kHub, kMateLength));
   product::Feature bore;
   bore.kind = product::FeatureKind::kHole;
   bore.radius = kRadius;
@@ -44,7 +44,7 @@ Product Rig(const std::string& code) {
   mate.a = {product::OccurrenceId(0), product::FeatureId(0), {}};
   mate.b = {product::OccurrenceId(1), product::FeatureId(0), {}};
   mate.hole_radius = mate.shaft_radius = kRadius;
-  mate.overlap = kLength;
+  mate.overlap = kMateLength;
   mate.fit = product::Fit{FitKind::kInterference, code, 2 * kRadius, false, "for the test"};
   product.mates.push_back(mate);
   return product;
@@ -78,7 +78,7 @@ TEST(MakeFitForceTest, W2EqualSeedsDrawEqualSizesAndOthersOthers) {
     const auto second = Make(product, seed);
     ASSERT_NE(first, nullptr);
     EXPECT_EQ(first->mean_clearance(), second->mean_clearance());
-    for (double depth = 0; depth <= kLength; depth += 1e-3) {
+    for (double depth = 0; depth <= kMateLength; depth += 1e-3) {
       EXPECT_EQ(first->CalcClearance(depth), second->CalcClearance(depth));
       EXPECT_EQ(first->CalcAxialResistance(depth), second->CalcAxialResistance(depth));
     }
@@ -119,7 +119,7 @@ TEST(MakeFitForceTest, MatesOfOneProductDrawTheirOwnSizes) {
 /** 1 - c_0^2 as W(7) has it, from a pressure and the interference there. */
 double MeasureWallTerm(const fits::FitForce& fit) {
   constexpr double kYoung = 210e9;
-  for (double depth = 0; depth <= kLength; depth += 0.1e-3) {
+  for (double depth = 0; depth <= kMateLength; depth += 0.1e-3) {
     if (fit.CalcClearance(depth) < -1e-6) {
       return fit.CalcPressure(depth) / -fit.CalcClearance(depth) * 2 * kRadius / kYoung;
     }
@@ -206,7 +206,7 @@ TEST(MakeFitForceTest, FrictionScalesTheForceAndRoughnessTheClearance) {  // W(4
   EXPECT_NEAR(rough->max_resistance() / usual->max_resistance(), 2, 1e-12);
   const auto amplitude = [](const fits::FitForce& fit) {
     double most = 0;
-    for (double depth = 0; depth <= kLength; depth += 0.1e-3) {
+    for (double depth = 0; depth <= kMateLength; depth += 0.1e-3) {
       most = std::max(most, std::abs(fit.CalcClearance(depth) - fit.mean_clearance()));
     }
     return most;
@@ -231,11 +231,11 @@ TEST(MakeFitForceTest, MaterialsAndABoreMakeThePressFitOfThePair) {
   product::Feature& shaft = product.parts[1].features[0];
   shaft.kind = product::FeatureKind::kShaft;
   shaft.radius = kRadius;
-  shaft.span_high = kLength;
+  shaft.span_high = kMateLength;
   fits::PressFitParameters press;
   press.joint_diameter = 2 * kRadius;
   press.hub_diameter = 2 * kHub;
-  press.length = kLength;
+  press.length = kMateLength;
   press.interference = 0.04e-3;
   press.hub.youngs_modulus = 110e9;
   press.hub.poisson_ratio = 0.28;
@@ -246,19 +246,19 @@ TEST(MakeFitForceTest, MaterialsAndABoreMakeThePressFitOfThePair) {
       hole.kind = product::FeatureKind::kHole;
       hole.radius = bore;
       hole.axis_B = -Vec3::UnitZ();
-      hole.span_low = -1.2 * kLength;
+      hole.span_low = -1.2 * kMateLength;
       hole.span_high = 0;
       product.parts[1].features.push_back(hole);
       hole.radius = 10e-3;  // A short one at its end does not make it hollow.
-      hole.span_low = -0.2 * kLength;
+      hole.span_low = -0.2 * kMateLength;
       product.parts[1].features.push_back(hole);
     }
     press.shaft_bore = 2 * bore;
     const fits::PressFit closed = *fits::CalcPressFit(press);
     const auto fit = Make(product, 1);
     ASSERT_NE(fit, nullptr);
-    EXPECT_NEAR(fit->CalcAxialResistance(kLength) / closed.press_in_force, 1, 1e-9) << bore;
-    EXPECT_NEAR(fit->CalcReleaseForce(kLength) / closed.push_out_force, 1, 1e-9) << bore;
+    EXPECT_NEAR(fit->CalcAxialResistance(kMateLength) / closed.press_in_force, 1, 1e-9) << bore;
+    EXPECT_NEAR(fit->CalcReleaseForce(kMateLength) / closed.push_out_force, 1, 1e-9) << bore;
   }
 }
 
@@ -271,11 +271,13 @@ TEST(MakeFitForceTest, FrictionOfAPairOfMaterialsComesFromTheTable) {
       fits::FindFriction(fits::FrictionSurface::kCopperAlloy, fits::FrictionSurface::kSteel, {});
   ASSERT_GT(law.static_coefficient, law.kinetic_coefficient);
   const auto fit = Make(product, 3);
-  const double normal = fit->CalcNormalForce(kLength);
+  const double normal = fit->CalcNormalForce(kMateLength);
   ASSERT_GT(normal, 1000);
-  EXPECT_NEAR(fit->CalcAxialResistance(kLength), law.static_coefficient * normal, 1e-9 * normal);
-  EXPECT_NEAR(fit->CalcReleaseForce(kLength), law.static_coefficient * normal, 1e-9 * normal);
-  EXPECT_NEAR(fit->CalcReleaseForce(kLength, 1), law.kinetic_coefficient * normal, 1e-9 * normal);
+  EXPECT_NEAR(fit->CalcAxialResistance(kMateLength), law.static_coefficient * normal,
+              1e-9 * normal);
+  EXPECT_NEAR(fit->CalcReleaseForce(kMateLength), law.static_coefficient * normal, 1e-9 * normal);
+  EXPECT_NEAR(fit->CalcReleaseForce(kMateLength, 1), law.kinetic_coefficient * normal,
+              1e-9 * normal);
 }
 
 // A chamfer at the end of the shaft is felt before the edge is in, one in its middle is not.
@@ -284,13 +286,13 @@ TEST(MakeFitForceTest, ChamferOfTheShaftLeadsIn) {
   product::Feature& shaft = product.parts[1].features[0];
   shaft.kind = product::FeatureKind::kShaft;
   shaft.radius = kRadius;
-  shaft.span_high = kLength;
+  shaft.span_high = kMateLength;
   EXPECT_EQ(Make(product, 3)->CalcAxialResistance(-1e-6), 0);
   product::Form chamfer;
   chamfer.kind = product::FormKind::kChamfer;
   chamfer.angle = 0.6;  // Included.
   chamfer.depth = 1e-3;
-  chamfer.origin_B = Vec3(0, 0, 0.5 * kLength);
+  chamfer.origin_B = Vec3(0, 0, 0.5 * kMateLength);
   product.parts[1].forms = {chamfer};
   EXPECT_EQ(Make(product, 3)->CalcAxialResistance(-1e-6), 0);
   product.parts[1].forms[0].origin_B = Vec3(0, 0, -0.5e-3);

@@ -83,13 +83,13 @@ TEST(Identification, RepeatsBySeedAndCountsEveryTrial) {
 
 // Newcombe, Statistics in Medicine 17, 1998, table I, method 3.
 TEST(Identification, IntervalsAreNewcombesPublishedOnes) {
-  struct Row {
+  struct Interval {
     int right, trials;
     double low, high;
   };
 
-  for (const Row& row : {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605},
-                         Row{0, 20, 0, 0.1611}, Row{1, 29, 0.0061, 0.1718}}) {
+  for (const Interval& row : {Interval{81, 263, 0.2553, 0.3662}, Interval{15, 148, 0.0624, 0.1605},
+                              Interval{0, 20, 0, 0.1611}, Interval{1, 29, 0.0061, 0.1718}}) {
     const ShareInterval interval = CalcShareInterval(row.right, row.trials);
     EXPECT_NEAR(interval.low, row.low, 5e-5);
     EXPECT_NEAR(interval.high, row.high, 5e-5);

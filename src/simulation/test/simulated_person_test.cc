@@ -16,7 +16,7 @@ using device::DeviceState;
 using spatial::Pose;
 using spatial::Wrench;
 
-constexpr double kDt = 1e-3;
+constexpr double kTick = 1e-3;
 constexpr double kDeviceForce = 7.9;  // [N]; the force-feedback device never gives more
 
 /** A part on a table at (0.2, 0.3, -0.3) that goes to the origin from above. */
@@ -46,7 +46,7 @@ std::vector<DeviceState> Perform(SimulatedPerson* person, const World& world, do
   std::vector<DeviceState> states;
   OperatorInput input;
   EXPECT_TRUE(person->Assign(MakeTask()));
-  for (int i = 0; i * kDt < time && person->finished_count() == 0; ++i) {
+  for (int i = 0; i * kTick < time && person->finished_count() == 0; ++i) {
     input.t_ns = static_cast<std::int64_t>(i) * 1'000'000;
     states.push_back(person->Step(input));
     input = world(states.back());
@@ -123,13 +123,13 @@ TEST(SimulatedPersonTest, ReachIsAMinimumJerkMovement) {  // Flash and Hogan 198
   const Vec3 from = StartOfHand().p();
   const Vec3 to = MakeTask().X_WG_start.p();
   const double duration = (to - from).norm() / (1.5 * PersonOptions().carry_speed);
-  const int n = static_cast<int>(std::lround(duration / kDt));
+  const int n = static_cast<int>(std::lround(duration / kTick));
   ASSERT_LT(n, static_cast<int>(states.size()));
   double worst = 0;
   double peak = 0;
   for (int i = 0; i < n; ++i) {
     // The task is taken up in the first sample.
-    const double s = static_cast<double>(i) * kDt / duration;
+    const double s = static_cast<double>(i) * kTick / duration;
     const double x = s * s * s * (10 - 15 * s + 6 * s * s);
     const std::size_t k = static_cast<std::size_t>(i);
     worst = std::max(worst, (states[k].X_DH.p() - (from + x * (to - from))).norm());
@@ -159,7 +159,7 @@ TEST(SimulatedPersonTest, HumanArmStillMovesInABellOfSpeed) {
     }
   }
   EXPECT_NEAR(peak / (way / duration), 1.875, 0.25);
-  EXPECT_NEAR(static_cast<double>(at) * kDt, 0.5 * duration, 0.12 * duration);
+  EXPECT_NEAR(static_cast<double>(at) * kTick, 0.5 * duration, 0.12 * duration);
   EXPECT_LT(states.back().V_DH.v.norm(), 0.02);
   EXPECT_LT((states.back().X_DH.p() - MakeTask().X_WG_start.p()).norm(), 2e-3);
 }
@@ -271,7 +271,7 @@ TEST(SimulatedPersonTest, SearchesThenGivesUpOnAWallAndBringsThePartBack) {
       &person,
       [&](const DeviceState& state) {
         const OperatorInput input = wall(state);
-        time_at_wall += input.F_H_D.f.z() > 0 ? kDt : 0;
+        time_at_wall += input.F_H_D.f.z() > 0 ? kTick : 0;
         return input;
       },
       60);

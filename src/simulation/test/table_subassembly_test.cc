@@ -22,7 +22,7 @@ using testing::WaypointHand;
 
 constexpr std::size_t kCup = 0;
 constexpr std::size_t kCarrier = 1;
-constexpr std::size_t kPeg = 2;
+constexpr std::size_t kCarriedPeg = 2;
 constexpr double kSamePlace = 1e-9;  // [m]
 
 class X1TableSubassemblyTest : public ::testing::Test {
@@ -58,10 +58,10 @@ class X1TableSubassemblyTest : public ::testing::Test {
 
   /** How far the peg is from where it is drawn in the carrier [m]. */
   [[nodiscard]] double CalcPegOffset() {
-    const Pose X_CP =
-        physics().pose(OccurrenceId(kCarrier)).Inverse() * physics().pose(OccurrenceId(kPeg));
+    const Pose X_CP = physics().pose(OccurrenceId(kCarrier)).Inverse() *
+                      physics().pose(OccurrenceId(kCarriedPeg));
     const Pose X_drawn =
-        model_.bodies[kCarrier].X_WB_goal.Inverse() * model_.bodies[kPeg].X_WB_goal;
+        model_.bodies[kCarrier].X_WB_goal.Inverse() * model_.bodies[kCarriedPeg].X_WB_goal;
     return (X_CP.p() - X_drawn.p()).norm() +
            kReach * spatial::RotationBetween(X_CP.q(), X_drawn.q()).norm();
   }
@@ -69,18 +69,18 @@ class X1TableSubassemblyTest : public ::testing::Test {
   /** Where the peg's centre of mass belongs in the carrier as that one stands. */
   [[nodiscard]] Vec3 CalcPegGoal() {
     return physics().pose(OccurrenceId(kCarrier)) * model_.bodies[kCarrier].X_WB_goal.Inverse() *
-           model_.bodies[kPeg].X_WB_goal * model_.bodies[kPeg].mass.p_BoBcm_B;
+           model_.bodies[kCarriedPeg].X_WB_goal * model_.bodies[kCarriedPeg].mass.p_BoBcm_B;
   }
 
   void PutPegIntoCarrier() {
     const Vec3 p_goal = CalcPegGoal();
-    Run(CarryOver(CentreOf(kPeg), p_goal, p_goal.z() + 60e-3));
+    Run(CarryOver(CentreOf(kCarriedPeg), p_goal, p_goal.z() + 60e-3));
   }
 
   [[nodiscard]] Vec3 CentreOfBoth() {
     const double m_c = model_.bodies[kCarrier].mass.mass;
-    const double m_p = model_.bodies[kPeg].mass.mass;
-    return (m_c * CentreOf(kCarrier) + m_p * CentreOf(kPeg)) / (m_c + m_p);
+    const double m_p = model_.bodies[kCarriedPeg].mass.mass;
+    return (m_c * CentreOf(kCarrier) + m_p * CentreOf(kCarriedPeg)) / (m_c + m_p);
   }
 
   void PutBothIntoCup() {
@@ -100,10 +100,10 @@ class X1TableSubassemblyTest : public ::testing::Test {
 
 TEST_F(X1TableSubassemblyTest, X1GroupHasMassCentreAndInertiaOfItsParts) {
   GroupStore store(model_);
-  const auto group = store.Get({OccurrenceId(kCarrier), OccurrenceId(kPeg)});
-  EXPECT_EQ(store.Get({OccurrenceId(kCarrier), OccurrenceId(kPeg)}), group);
+  const auto group = store.Get({OccurrenceId(kCarrier), OccurrenceId(kCarriedPeg)});
+  EXPECT_EQ(store.Get({OccurrenceId(kCarrier), OccurrenceId(kCarriedPeg)}), group);
   const dynamics::MassProperties& carrier = model_.bodies[kCarrier].mass;
-  const dynamics::MassProperties& peg = model_.bodies[kPeg].mass;
+  const dynamics::MassProperties& peg = model_.bodies[kCarriedPeg].mass;
   EXPECT_NEAR(group->mass, carrier.mass + peg.mass, 1e-15);
   const Vec3 p_peg = peg.p_BoBcm_B + Vec3(0, 0, 2e-3);  // in the carrier
   const Vec3 centre = (carrier.mass * carrier.p_BoBcm_B + peg.mass * p_peg) / group->mass;
@@ -121,9 +121,9 @@ TEST_F(X1TableSubassemblyTest, X1GroupHasMassCentreAndInertiaOfItsParts) {
 
 TEST_F(X1TableSubassemblyTest, X1PartsPutTogetherOnTheTableAreOneBody) {
   PutPegIntoCarrier();
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kLoose);
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kLoose);
   EXPECT_EQ(PlacementOf(kCarrier), Placement::kLoose);
-  EXPECT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  EXPECT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   EXPECT_EQ(LeaderOf(kCarrier), OccurrenceId(kCarrier));
   EXPECT_FALSE(LeaderOf(kCup).is_valid());
   EXPECT_LT(CalcPegOffset(), kSamePlace);
@@ -140,16 +140,16 @@ TEST_F(X1TableSubassemblyTest, X1WithoutLeaveToJoinAPegOnTheCarrierIsByItself) {
   AssemblyRun run(&other, Persons{}, nullptr);
   run.Advance();
   const Vec3 p_goal = CalcPegGoal();
-  WaypointHand hand(CarryOver(CentreOf(kPeg), p_goal, p_goal.z() + 60e-3));
+  WaypointHand hand(CarryOver(CentreOf(kCarriedPeg), p_goal, p_goal.z() + 60e-3));
   Execution execution = run.MakeExecution(&hand, 60);
   execution.is_done = [&hand] { return hand.is_done(); };
   (void)RunLockstep(execution);
-  EXPECT_FALSE(other.physics().parts()[kPeg].leader.is_valid());
+  EXPECT_FALSE(other.physics().parts()[kCarriedPeg].leader.is_valid());
 }
 
 TEST_F(X1TableSubassemblyTest, X1SubassemblyIsCarriedAndLetGoItStaysTogether) {
   PutPegIntoCarrier();
-  ASSERT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  ASSERT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   const Vec3 p_from = CentreOfBoth();
   const Vec3 p_to = p_from + Vec3(-0.12, -0.02, 40e-3);  // it falls from there
   Run(CarryOver(p_from, p_to, p_from.z() + 60e-3));
@@ -157,22 +157,22 @@ TEST_F(X1TableSubassemblyTest, X1SubassemblyIsCarriedAndLetGoItStaysTogether) {
     return event.kind == SimulationEvent::Kind::kTaken;
   });
   EXPECT_EQ(taken->occurrence, OccurrenceId(kCarrier));
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kLoose);
-  EXPECT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kLoose);
+  EXPECT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   EXPECT_LT(CalcPegOffset(), kSamePlace);
   EXPECT_LT((CentreOfBoth() - p_to).head<2>().norm(), 20e-3);
   EXPECT_LT(CentreOfBoth().z(), p_to.z() - 20e-3) << "it has fallen";
-  EXPECT_GT(CentreOf(kPeg).z(), model_.table_z) << "but not through the table";
+  EXPECT_GT(CentreOf(kCarriedPeg).z(), model_.table_z) << "but not through the table";
   EXPECT_TRUE(watch_.is_finite);
 }
 
 TEST_F(X1TableSubassemblyTest, X1SubassemblyIsInsertedAndDrawnOutAsOne) {
   PutPegIntoCarrier();
-  ASSERT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  ASSERT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   PutBothIntoCup();
   ASSERT_EQ(PlacementOf(kCarrier), Placement::kPlaced);
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kPlaced);
-  for (const std::size_t part : {kCarrier, kPeg}) {
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kPlaced);
+  for (const std::size_t part : {kCarrier, kCarriedPeg}) {
     const Vec3 p = physics().pose(OccurrenceId(part)).p();
     EXPECT_LT((p - model_.bodies[part].X_WB_goal.p()).norm(), 1e-6) << part;
   }
@@ -180,15 +180,15 @@ TEST_F(X1TableSubassemblyTest, X1SubassemblyIsInsertedAndDrawnOutAsOne) {
   const Vec3 p_from = CentreOfBoth();
   Run(CarryOver(p_from, p_from + Vec3(0.15, 0, 0.05), p_from.z() + 60e-3));
   EXPECT_EQ(PlacementOf(kCarrier), Placement::kLoose);
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kLoose);
-  EXPECT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kLoose);
+  EXPECT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   EXPECT_LT(CalcPegOffset(), kSamePlace);
   EXPECT_LT(run_.next_step(), model_.sequence.steps.size()) << "both steps are to be done again";
 }
 
 TEST_F(X1TableSubassemblyTest, X1SimulatedPersonInsertsTheSubassemblyAsOne) {
   PutPegIntoCarrier();
-  ASSERT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  ASSERT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   SimulatedPerson person({}, 1, StartOfHand(model_));
   testing::Watch seen;
   AssemblyRun again(&simulation_, &person, &seen);
@@ -196,7 +196,7 @@ TEST_F(X1TableSubassemblyTest, X1SimulatedPersonInsertsTheSubassemblyAsOne) {
   (void)RunLockstep(again.MakeExecution(&person, 120));
   EXPECT_TRUE(again.is_done());
   EXPECT_EQ(PlacementOf(kCarrier), Placement::kPlaced);
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kPlaced);
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kPlaced);
   EXPECT_LT(CalcPegOffset(), 1e-6);
   const auto takes = std::count_if(seen.events.begin(), seen.events.end(), [](auto& event) {
     return event.kind == SimulationEvent::Kind::kTaken;
@@ -210,22 +210,22 @@ TEST_F(X1TableSubassemblyTest, X1SimulatedPersonInsertsTheSubassemblyAsOne) {
 
 TEST_F(X1TableSubassemblyTest, X1MemberTakenAloneLeavesItsSubassembly) {
   PutPegIntoCarrier();
-  ASSERT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  ASSERT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   const Pose X_carrier = physics().pose(OccurrenceId(kCarrier));
   physics().Prepare(
-      MakeTableStep(model_, physics().parts(), OccurrenceId(kPeg), TakeExtent::kAlone));
-  const Vec3 p_from = CentreOf(kPeg);
+      MakeTableStep(model_, physics().parts(), OccurrenceId(kCarriedPeg), TakeExtent::kAlone));
+  const Vec3 p_from = CentreOf(kCarriedPeg);
   Run(CarryOver(p_from, p_from + Vec3(-0.1, 0, 0.03), p_from.z() + 60e-3));
-  EXPECT_FALSE(LeaderOf(kPeg).is_valid());
+  EXPECT_FALSE(LeaderOf(kCarriedPeg).is_valid());
   EXPECT_FALSE(LeaderOf(kCarrier).is_valid());
-  EXPECT_EQ(PlacementOf(kPeg), Placement::kLoose);
+  EXPECT_EQ(PlacementOf(kCarriedPeg), Placement::kLoose);
   EXPECT_GT(CalcPegOffset(), 50e-3);
   EXPECT_LT((physics().pose(OccurrenceId(kCarrier)).p() - X_carrier.p()).norm(), 1e-3);
 }
 
 TEST_F(X1TableSubassemblyTest, X1SubassemblyIsThereAfterRestoringTheParts) {
   PutPegIntoCarrier();
-  ASSERT_EQ(LeaderOf(kPeg), OccurrenceId(kCarrier));
+  ASSERT_EQ(LeaderOf(kCarriedPeg), OccurrenceId(kCarrier));
   const std::vector<PartState> parts = physics().parts();
   Simulation again(PegInCarrierInCupModel(), haptics::TickOptions());
   again.Restore(parts);
@@ -236,9 +236,10 @@ TEST_F(X1TableSubassemblyTest, X1SubassemblyIsThereAfterRestoringTheParts) {
   Execution execution = run.MakeExecution(&hand, 60);
   execution.is_done = [&hand] { return hand.is_done(); };
   (void)RunLockstep(execution);
-  const Vec3 moved = again.physics().pose(OccurrenceId(kPeg)).p() - parts[kPeg].X_WB.p();
+  const Vec3 moved =
+      again.physics().pose(OccurrenceId(kCarriedPeg)).p() - parts[kCarriedPeg].X_WB.p();
   EXPECT_GT(moved.norm(), 50e-3) << "the peg went with the carrier";
-  EXPECT_EQ(again.physics().parts()[kPeg].leader, OccurrenceId(kCarrier));
+  EXPECT_EQ(again.physics().parts()[kCarriedPeg].leader, OccurrenceId(kCarrier));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 using testing::OccurrenceId;
 using testing::Pose;
 
-constexpr std::size_t kPeg = 1;
+constexpr std::size_t kTakenPeg = 1;
 
 /** A hand that closes at a place, goes along a straight line, and opens at its end. */
 class StraightHand final : public Operator {
@@ -47,7 +47,7 @@ class TakeOutTest : public ::testing::Test {
  protected:
   TakeOutTest() : session_(testing::PegInBlockModel()) {
     (void)RunLockstep(session_.MakeExecution(60));
-    EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kPlaced);
+    EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kPlaced);
   }
 
   /** Goes on where the run is, with a hand that takes the peg out along `way`. */
@@ -61,8 +61,8 @@ class TakeOutTest : public ::testing::Test {
   /** With a hand that closes where the peg is. */
   void PullWhatIsThere(const Vec3& way, AssemblyRun* run) {
     const Simulation& simulation = session_.simulation;
-    const Vec3 p_WG = simulation.physics().pose(OccurrenceId(kPeg)) *
-                      simulation.model().bodies[kPeg].mass.p_BoBcm_B;
+    const Vec3 p_WG = simulation.physics().pose(OccurrenceId(kTakenPeg)) *
+                      simulation.model().bodies[kTakenPeg].mass.p_BoBcm_B;
     StraightHand hand(p_WG, p_WG + way);
     Execution execution = run->MakeExecution(&hand, 10);
     execution.is_done = [&hand] { return hand.is_done(); };
@@ -73,7 +73,9 @@ class TakeOutTest : public ::testing::Test {
     return session_.simulation.model().sequence.steps.back();
   }
 
-  [[nodiscard]] Pose pose() const { return session_.simulation.physics().pose(OccurrenceId(kPeg)); }
+  [[nodiscard]] Pose pose() const {
+    return session_.simulation.physics().pose(OccurrenceId(kTakenPeg));
+  }
 
   testing::Session session_;
   testing::Watch watch_;
@@ -86,7 +88,7 @@ TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
   Pull(Vec3(0, 0, 60e-3), &hands);
   EXPECT_GT(pose().p().z(), before.p().z() + 15e-3);  // it fell on the block
   EXPECT_LT(watch_.deepest, 0.2e-3);
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kLoose);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kLoose);
   EXPECT_EQ(hands.next_step(), session_.simulation.model().sequence.steps.size() - 1);
   const auto seen = [this](haptics::HoldState state) {
     return std::any_of(watch_.events.begin(), watch_.events.end(),
@@ -101,11 +103,11 @@ TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
   hands.Advance();
   const Pose before = pose();
   PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);  // nobody has said that it may
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kPlaced);
   EXPECT_EQ((pose().p() - before.p()).norm(), 0);
   session_.simulation.physics().AllowTakingOut(0);
   PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kLoose);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kLoose);
   EXPECT_GT(pose().p().z(), before.p().z() + 15e-3);
 }
 
@@ -114,7 +116,7 @@ TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(0, 0, 1e-3), &hands);
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kPlaced);
   EXPECT_EQ((pose().p() - before.p()).norm(), 0);
 }
 
@@ -124,18 +126,18 @@ TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
   const Pose before = pose();
   Pull(Vec3(40e-3, 0, 0), &hands);
   EXPECT_LT((pose().p() - before.p()).norm(), 1e-3);
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kPlaced);
 }
 
 TEST_F(TakeOutTest, PersonPutsItInAgain) {
   AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
   hands.Advance();
   Pull(Vec3(0, 30e-3, 60e-3), &hands);
-  ASSERT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kLoose);
+  ASSERT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kLoose);
   AssemblyRun again(&session_.simulation, &session_.person, nullptr);
   again.Resume(hands.next_step());
   (void)RunLockstep(again.MakeExecution(&session_.person, 120));
-  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kPeg)), Placement::kPlaced);
+  EXPECT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kPlaced);
 }
 
 }  // namespace

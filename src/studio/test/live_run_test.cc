@@ -12,7 +12,7 @@ namespace {
 
 using spatial::Pose;
 
-constexpr std::size_t kPeg = 1;
+constexpr std::size_t kPegIndex = 1;
 
 /** The last that a run told, kept for the test's thread. */
 class Listener {
@@ -111,11 +111,11 @@ class LiveRunTest : public ::testing::Test {
 };
 
 TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
-  const Pose X_WB = run_->state().parts[kPeg].X_WB;
+  const Pose X_WB = run_->state().parts[kPegIndex].X_WB;
   const simulation::SequenceStep step =
       *std::find_if(model_->sequence.steps.begin(), model_->sequence.steps.end(),
-                    [](const auto& s) { return s.occurrence.index() == kPeg; });
-  const Vec3 p_WH = X_WB * model_->bodies[kPeg].mass.p_BoBcm_B;
+                    [](const auto& s) { return s.occurrence.index() == kPegIndex; });
+  const Vec3 p_WH = X_WB * model_->bodies[kPegIndex].mass.p_BoBcm_B;
   run_->Take(0, step, Pose(p_WH));
   ASSERT_TRUE(MoveUntil(p_WH, [this] { return run_->is_holding(0); }));
   const Vec3 p_below = p_WH - Vec3(0, 0, 0.01);  // into the table
@@ -132,10 +132,10 @@ TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
 }
 
 TEST_F(LiveRunTest, DeviceGoesFromOneRunToTheNext) {
-  const Pose X_WB = run_->state().parts[kPeg].X_WB;
+  const Pose X_WB = run_->state().parts[kPegIndex].X_WB;
   run_.reset();
   Begin();
-  const Vec3 p_WH = X_WB * model_->bodies[kPeg].mass.p_BoBcm_B;
+  const Vec3 p_WH = X_WB * model_->bodies[kPegIndex].mass.p_BoBcm_B;
   EXPECT_TRUE(MoveUntil(p_WH, [&] {
     const simulation::Frame frame = listener_.frame();
     return !frame.ticks.empty() && (frame.ticks[0].X_WH.p() - p_WH).norm() < 2e-3;

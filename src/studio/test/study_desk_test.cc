@@ -47,7 +47,7 @@ questions:
   - {id: calm, kind: scale, text: How calm, asked: at_end}
 )";
 
-class FakeLink final : public ClientLink {
+class DeskLink final : public ClientLink {
  public:
   void SendText(std::string text) override {
     texts.push_back(std::move(text));
@@ -151,7 +151,7 @@ class StudyDeskTest : public ::testing::Test {
   }
 
   Json Ask(const std::string& id, Json command) {
-    FakeLink& link = id == participant_ ? participant_link_ : experimenter_link_;
+    DeskLink& link = id == participant_ ? participant_link_ : experimenter_link_;
     command["id"] = ++last_id_;
     command["command"] = "study";
     now_ns_ += 1'000'000'000;
@@ -196,8 +196,8 @@ class StudyDeskTest : public ::testing::Test {
   Workbench bench_;
   Hub hub_;
   std::unique_ptr<StudyDesk> desk_;
-  FakeLink experimenter_link_;
-  FakeLink participant_link_;
+  DeskLink experimenter_link_;
+  DeskLink participant_link_;
   std::string experimenter_;
   std::string participant_;
   std::size_t pumped_{0};
@@ -207,9 +207,9 @@ class StudyDeskTest : public ::testing::Test {
 
 TEST_F(StudyDeskTest, NobodyGivesTheParticipantsHandAwayOrTakesIt) {
   Join();
-  FakeLink other_link;
+  DeskLink other_link;
   const std::string other = *hub_.Join(Role::kOperator, &other_link);
-  const auto lease = [this](const std::string& id, FakeLink* link, Json command) {
+  const auto lease = [this](const std::string& id, DeskLink* link, Json command) {
     command["command"] = "lease";
     command["id"] = 7;
     link->texts.clear();
@@ -230,7 +230,7 @@ TEST_F(StudyDeskTest, NobodyGivesTheParticipantsHandAwayOrTakesIt) {
     EXPECT_FALSE(lease(experimenter_, &experimenter_link_, command)) << command;
   }
   EXPECT_EQ(Json::parse(other_link.texts.front())["event"], "hello");
-  FakeLink late_link;
+  DeskLink late_link;
   (void)*hub_.Join(Role::kOperator, &late_link);
   for (const std::string& text : late_link.texts) {
     const Json json = Json::parse(text);

@@ -20,7 +20,7 @@ namespace {
 using Kind = StudyEvent::Kind;
 using testing::ReadAll;
 
-const JournalHead kHead{"P01", "0123", 7, false};
+const JournalHead kJournalHead{"P01", "0123", 7, false};
 
 StudyEvent MakeNote(int i) {
   StudyEvent event;
@@ -43,7 +43,7 @@ StudyEvent MakeEnd() {
 }
 
 void Fill(const std::filesystem::path& file) {
-  auto journal = Journal::Open(file, kHead);
+  auto journal = Journal::Open(file, kJournalHead);
   ASSERT_TRUE(journal) << journal.error().ToString();
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(journal->Append(MakeNote(i)));
@@ -88,7 +88,7 @@ TEST_F(JournalTest, CutAnywhereItKeepsAllWholeLinesAndGoesOn) {
     WriteAll(file_, cut);
     const auto lines = static_cast<std::size_t>(std::count(cut.begin(), cut.end(), '\n'));
     {
-      auto journal = Journal::Open(file_, kHead, /*is_synced=*/false);
+      auto journal = Journal::Open(file_, kJournalHead, /*is_synced=*/false);
       ASSERT_TRUE(journal) << journal.error().ToString();
       ASSERT_EQ(journal->events().size(), lines == 0 ? 0 : lines - 1);
       ASSERT_TRUE(journal->Append(MakeNote(9)));
@@ -112,12 +112,12 @@ TEST_F(JournalTest, DamagedLineInTheMiddleIsNamed) {
 
 TEST_F(JournalTest, IsOnePersonsAndOneProgramsAtATime) {
   Fill(file_);
-  JournalHead other = kHead;
+  JournalHead other = kJournalHead;
   other.seed = 8;
   EXPECT_FALSE(Journal::Open(file_, other));
-  const auto first = Journal::Open(file_, kHead);
+  const auto first = Journal::Open(file_, kJournalHead);
   ASSERT_TRUE(first);
-  const auto second = Journal::Open(file_, kHead);
+  const auto second = Journal::Open(file_, kJournalHead);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message.find("another program"), std::string::npos);
 }
@@ -131,7 +131,7 @@ TEST_F(JournalTest, KilledAtRandomMomentsItLosesNothingThatWasAppended) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      auto journal = Journal::Open(file_, kHead);
+      auto journal = Journal::Open(file_, kJournalHead);
       for (int i = 0; journal && i < 100000; ++i) {
         const char done = 1;
         if (!journal->Append(MakeNote(i)) || ::write(pipe_ends[1], &done, 1) != 1) {
@@ -150,7 +150,7 @@ TEST_F(JournalTest, KilledAtRandomMomentsItLosesNothingThatWasAppended) {
       ++told;
     }
     ::close(pipe_ends[0]);
-    const auto journal = Journal::Open(file_, kHead);
+    const auto journal = Journal::Open(file_, kJournalHead);
     ASSERT_TRUE(journal) << journal.error().ToString();
     ASSERT_GE(journal->events().size(), before + told) << "round " << round;
     ASSERT_LE(journal->events().size(), before + told + 1) << "round " << round;
