@@ -107,7 +107,7 @@ function(hvas_test name)
   endif()
   target_sources(${program} PRIVATE ${ARG_SOURCES})
   target_link_libraries(${program} PRIVATE ${ARG_DEPS})
-  set(filter)
+  set(filter "--gtest_filter=-*ReleaseTest.*")
   if(ARG_IN)
     hvas_list_suites(suites ${ARG_SOURCES})
     set_property(TARGET ${program} APPEND PROPERTY HVAS_PARTS "${suites}")
@@ -137,15 +137,10 @@ function(hvas_test name)
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS};room_${room}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 
-# hvas_release_tests(<name> <of> [<filter>]): the tests of a program whose suites are called ...ReleaseTest, as a test of
-# their own: a minute or more of runs over whole products and studies, for `./test all`. The filter chooses some of them.
-function(hvas_release_tests name of)
-  set(filter "*ReleaseTest.*")
-  if(ARGC GREATER 2)
-    set(filter ${ARGV2})
-  endif()
-  add_test(NAME ${name} COMMAND ${of} --gtest_filter=${filter})
+# hvas_release_tests(<name> <program> <filter>): those of a program's tests that only `./test all` runs, a minute or more each,
+# as a ctest entry of their own. Their suites are called ...ReleaseTest, and the filter chooses some of them.
+function(hvas_release_tests name program filter)
+  add_test(NAME ${name} COMMAND ${program} --gtest_filter=${filter})
   get_filename_component(room ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   set_tests_properties(${name} PROPERTIES LABELS "e2e;release;room_${room}" TIMEOUT 1200)
-  set_tests_properties(${of} PROPERTIES ENVIRONMENT GTEST_FILTER=-*ReleaseTest.*)
 endfunction()
