@@ -233,9 +233,9 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
 
   /** How fast a part goes in, and how far the hand leads it. */
   struct Advance {
-    double speed{0};         ///< Of the part inwards, as it is felt [m/s].
+    double speed{0};         ///< Speed of the part inwards, as it is felt [m/s].
     double wanted_speed{0};  ///< [m/s]
-    double lead{0};          ///< Of the hand's aim before the hand [m].
+    double lead{0};          ///< Distance of the aim ahead of the hand [m].
   };
 
   void StepInsert(const OperatorInput& input) noexcept;
