@@ -396,6 +396,19 @@ export async function watchFor(page, selector) {
   return () => watch.evaluate(({ isSeen }) => isSeen);
 }
 
+/** Does something, and returns the text of the notice that it brings up, however short that is on the page. */
+export async function noticeAfter(page, act) {
+  const noted = await page.evaluateHandle(() => {
+    const kept = { text: null };
+    const look = () => (kept.text ??= document.querySelector("[data-testid=notice]")?.textContent ?? null);
+    new MutationObserver(look).observe(document.body, { childList: true, subtree: true, characterData: true });
+    return kept;
+  });
+  await act();
+  await page.waitForFunction(({ text }) => text !== null, noted, { timeout: kPatienceMs });
+  return noted.evaluate(({ text }) => text);
+}
+
 /** Until the server has answered all that the page has sent it so far: what that has led to is known by then. */
 export function waitForAnswer(page) {
   return page.evaluate(() => window.hvas.hasAnswered());

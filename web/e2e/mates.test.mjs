@@ -6,6 +6,7 @@ import {
   copyToTemporary,
   fetchScene,
   findAndClickFace,
+  noticeAfter,
   openPage,
   runProgram,
   shareBrowser,
@@ -84,8 +85,8 @@ describe("a mate", () => {
     await page.keyboard.press("c");
     await findAndClickFace(page, kShaft, shaft.faces_b[0], kShaft, turnViewByKeys);
     await findAndClickFace(page, ...seen, kShaft, turnViewByKeys);
-    await page.getByTestId("mate-create").click();
-    assert.match(await page.getByTestId("notice").textContent(), /a plane and a shaft|a shaft and a plane/);
+    const reason = await noticeAfter(page, () => page.getByTestId("mate-create").click());
+    assert.match(reason, /a plane and a shaft|a shaft and a plane/);
     await takePicture(page, "mate_refused");
     assert.equal((await fetchScene(page)).epoch, epoch);
     await page.context().close();
@@ -140,8 +141,7 @@ describe("a mate", () => {
     await page.getByTestId("mate-fit").fill("H7");
     assert.equal(await page.getByTestId("mate-create").isDisabled(), true);
     await page.getByTestId("mate-fit").fill("H7/zz99");
-    await page.getByTestId("mate-create").click();
-    await page.getByTestId("notice").waitFor();
+    await noticeAfter(page, () => page.getByTestId("mate-create").click());
     await takePicture(page, "mate_bad_fit");
     assert.equal(await page.getByTestId("mate-panel").locator(".picked").textContent(), picked);
     assert.equal(await page.getByTestId("mate-fit").inputValue(), "H7/zz99");
@@ -164,8 +164,7 @@ describe("a mate", () => {
     await page.getByRole("heading", { name: /H7\/p6/ }).waitFor();
     await takePicture(page, "fit_changed");
     await input.fill("H7/zz99");
-    await page.getByTestId("fit-apply").click();
-    await page.getByTestId("notice").waitFor();
+    await noticeAfter(page, () => page.getByTestId("fit-apply").click());
     await takePicture(page, "fit_refused");
     await page.context().close();
   }));

@@ -7,7 +7,7 @@
 namespace hvas::haptics {
 namespace {
 
-constexpr double kDt = 1e-3;  // [s]
+constexpr double kBuzzPeriod = 1e-3;  // [s]
 
 /** Lets a hand swing to and fro along an axis, with a force against it.
  @param ticks  Of a swing one way.
@@ -21,7 +21,7 @@ int CountReversals(int ticks, double speed, double force, int axis = 0) {
       Vec3 f = Vec3::Zero();
       v[axis] = sign * speed;
       f[axis] = -sign * force;
-      if (detector.Update(v, f, kDt)) {
+      if (detector.Update(v, f, kBuzzPeriod)) {
         return swing;
       }
     }
@@ -56,7 +56,8 @@ TEST(BuzzDetector, SwingsAlongDifferentAxesDoNotAddUp) {
   BuzzDetector detector({});
   for (int swing = 0; swing < 7; ++swing) {  // The first only begins: six reversals of each axis.
     const double sign = swing % 2 == 0 ? 1 : -1;
-    EXPECT_FALSE(detector.Update(sign * Vec3(0.05, -0.05, 0.05), sign * Vec3(-1, 1, -1), kDt));
+    EXPECT_FALSE(
+        detector.Update(sign * Vec3(0.05, -0.05, 0.05), sign * Vec3(-1, 1, -1), kBuzzPeriod));
   }
 }
 
@@ -65,7 +66,7 @@ TEST(BuzzDetector, ResetForgetsTheReversals) {
   int found = 0;
   for (int swing = 0; swing < 40; ++swing) {
     const double sign = swing % 2 == 0 ? 1 : -1;
-    found += detector.Update(Vec3(sign * 0.05, 0, 0), Vec3(-sign, 0, 0), kDt) ? 1 : 0;
+    found += detector.Update(Vec3(sign * 0.05, 0, 0), Vec3(-sign, 0, 0), kBuzzPeriod) ? 1 : 0;
     if (swing % 8 == 7) {
       detector.Reset();
     }

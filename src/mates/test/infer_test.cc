@@ -196,6 +196,7 @@ TEST(Infer, ABushingBetweenShaftAndHousingLeavesTwoMates) {
   // Without the bushing the shaft has nothing nearer than the housing: the ratio lets it pair.
   product.occurrences.erase(product.occurrences.begin() + 1);
   product.occurrences[1].id = product::OccurrenceId(1);
+  product.subassemblies[0].occurrences.pop_back();
   Infer(&product, &diagnostics);
   EXPECT_EQ(product.mates.size(), 1U);
 }

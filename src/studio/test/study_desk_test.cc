@@ -366,7 +366,7 @@ TEST_F(StudyDeskTest, W12BinaryFramesHoldTheTrueForceForTheExperimenterAlone) {
   const auto taken = bench_.hands().Take(0, product::OccurrenceId(1));
   ASSERT_TRUE(taken) << taken.error().ToString();
   // The peg is pressed downwards until the experimenter sees by which force.
-  const auto is_pressed = [](const FakeLink& link) {
+  const auto is_pressed = [](const DeskLink& link) {
     const auto hands = link.Items<protocol::HandState>();
     const auto contacts = link.Items<protocol::ContactPoint>();
     return std::any_of(hands.begin(), hands.end(),
