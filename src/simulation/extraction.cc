@@ -31,7 +31,7 @@ constexpr double kEndlessWay = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = 2e-3;  // [m]; longer ones could pass through a thin wall.
 // Looks along one way, so that the time does not grow with the size of a product: 10 m at the
 // longest step, and 1.25 m at the shortest. A choice.
-constexpr double kMostLooks = 5000;
+constexpr double kMostLooksOfWay = 5000;
 
 }  // namespace
 
@@ -415,7 +415,7 @@ double Extraction::CalcStep(const Unit& unit, double length) const {
     const contact::Shape& shape = input_.scene->shape(contact::BodyId(id.index()));
     step = std::min(step, std::max(kShortestStep, 0.01 * shape.box_B().size().norm()));
   }
-  return std::max(step, length / kMostLooks);
+  return std::max(step, length / kMostLooksOfWay);
 }
 
 std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& direction,
