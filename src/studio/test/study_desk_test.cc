@@ -375,7 +375,7 @@ TEST_F(StudyDeskTest, W12BinaryFramesHoldTheTrueForceForTheExperimenterAlone) {
                        [](const auto& contact) { return IsSome(contact.f_C_W_n); });
   };
   double below = 0;
-  ASSERT_TRUE(hvas::testing::AwaitTrue([&] {
+  ASSERT_TRUE(log_.AwaitTrue([&] {
     below = std::min(below + 0.2e-3, 0.2);
     bench_.hands().Move(0, spatial::Pose(taken->X_WH.q(), taken->X_WH.p() - Vec3(0, 0, below)),
                         true);
