@@ -317,12 +317,14 @@ describe("the experimenter", () => {
     for (const trial of [2, 3]) {
       await person.until((state) => state.phase === "ready" && state.trial === trial);
       await person.do("ready");
+      await person.until((state) => state.phase === "running" && state.elapsed_s !== null);
       await press(desk, "desk-not-done");
       await person.until((state) => state.phase === "question");
       await person.do("answer", { question: "identify", value: "H7/g6" });
     }
     await desk.locator('[data-testid="desk-trials"] tbody').getByText("not done").first().waitFor();
     await person.do("ready");
+    await person.until((state) => state.phase === "running" && state.elapsed_s !== null);
     await press(desk, "desk-not-done");
     await person.until((state) => state.phase === "question");
     await person.do("answer", { question: "steady", value: 8 });

@@ -94,8 +94,8 @@ export function withStudy(run) {
           return { ...line, link: `http://127.0.0.1:${line.port}/${hash}` };
         },
       });
-      await Promise.all(others.map((other) => other.leave()));
     } finally {
+      await Promise.allSettled(others.map((other) => other.leave()));  // Their sockets would keep this program from ending.
       lines.forEach((line) => line.close());
       await studio.kill();
     }
