@@ -153,6 +153,55 @@ void AddBlock(const Vec3& half, const Vec3& at, TriangleSoup* soup) {
 constexpr int kForms = 14;
 constexpr int kRound = 24;  // Corners of a circle: few, for speed.
 
+/** The profile of a ball on the ground. */
+Profile MakeBall(double radius) {
+  constexpr int kRows = 8;
+  Profile profile;
+  for (int i = 0; i <= kRows; ++i) {
+    const double polar = 0.5 * kTurn * i / kRows;
+    profile.emplace_back(i % kRows == 0 ? 0 : radius * std::sin(polar),
+                         radius - radius * std::cos(polar));
+  }
+  return profile;
+}
+
+/** The profile of a ring of round section on the ground. */
+Profile MakeRing(double radius, double section) {
+  constexpr int kSection = 8;
+  Profile profile;
+  for (int i = 0; i <= kSection; ++i) {
+    const double angle = kTurn * (i % kSection) / kSection;
+    profile.emplace_back(radius + section * std::cos(angle), section + section * std::sin(angle));
+  }
+  return profile;
+}
+
+void AddAnyTriangles(std::uint64_t seed, double radius, double height, TriangleSoup* soup) {
+  Random random(seed);
+  const int count = 1 + static_cast<int>(random.NextBits() % 40);
+  for (int i = 0; i < count; ++i) {
+    soup->vertices.emplace_back(random.Uniform(-radius, radius), random.Uniform(-radius, radius),
+                                random.Uniform(0, height));
+    const auto size = static_cast<std::uint64_t>(i + 1);
+    soup->triangles.push_back({static_cast<std::uint32_t>(random.NextBits() % size),
+                               static_cast<std::uint32_t>(random.NextBits() % size),
+                               static_cast<std::uint32_t>(random.NextBits() % size)});
+  }
+}
+
+/** Adds a turned part of any profile, closed or not. */
+void AddAnyTurned(std::uint64_t seed, double radius, double height, TriangleSoup* soup) {
+  Random random(seed);
+  Profile profile{{0, 0}};
+  const int count = 1 + static_cast<int>(random.NextBits() % 6);
+  for (int i = 0; i < count; ++i) {
+    profile.emplace_back(radius * static_cast<double>(random.NextBits() % 5) / 4,
+                         height * static_cast<double>(random.NextBits() % 9) / 8);
+  }
+  profile.emplace_back(0, profile.back().second);
+  AddTurned(profile, 3 + static_cast<int>(random.NextBits() % 22), Vec3::Zero(), soup);
+}
+
 /** The triangles of a form with the dimensions of a part, in units of its scale. */
 TriangleSoup MakeForm(const RandomPart& part) {
   const double r = PickFrom(kLengths, part.radius);
@@ -177,16 +226,9 @@ TriangleSoup MakeForm(const RandomPart& part) {
     case 4:  // A cone.
       AddTurned({{0, 0}, {r, 0}, {bore, h}, {0, h}}, kRound, Vec3::Zero(), &soup);
       break;
-    case 5: {  // A ball.
-      constexpr int kRows = 8;
-      Profile profile;
-      for (int i = 0; i <= kRows; ++i) {
-        const double polar = 0.5 * kTurn * i / kRows;
-        profile.emplace_back(i % kRows == 0 ? 0 : r * std::sin(polar), r - r * std::cos(polar));
-      }
-      AddTurned(profile, kRound, Vec3::Zero(), &soup);
+    case 5:
+      AddTurned(MakeBall(r), kRound, Vec3::Zero(), &soup);
       break;
-    }
     case 6:  // A hexagon, as of a nut without a hole.
       AddTurned(full, 6, Vec3::Zero(), &soup);
       break;
@@ -198,17 +240,9 @@ TriangleSoup MakeForm(const RandomPart& part) {
       AddTurned({{0, 0}, {bore, 0}, {bore, h}, {0, h}}, kRound, Vec3::Zero(), &soup);
       AddTurned({{0, h}, {r, h}, {r, 1.3 * h}, {0, 1.3 * h}}, 6, Vec3::Zero(), &soup);
       break;
-    case 9:  // A ring of round section.
-      {
-        constexpr int kSection = 8;
-        Profile profile;
-        for (int i = 0; i <= kSection; ++i) {
-          const double angle = kTurn * (i % kSection) / kSection;
-          profile.emplace_back(r + bore * std::cos(angle), bore + bore * std::sin(angle));
-        }
-        AddTurned(profile, kRound, Vec3::Zero(), &soup);
-        break;
-      }
+    case 9:
+      AddTurned(MakeRing(r, bore), kRound, Vec3::Zero(), &soup);
+      break;
     case 10:  // A sheet.
       soup.vertices = {{-r, -r, 0}, {r, -r, 0}, {r, r, 0}, {-r, r, 0}};
       soup.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -217,30 +251,12 @@ TriangleSoup MakeForm(const RandomPart& part) {
       AddBlock(Vec3(r, r, 0.5 * h), Vec3(0, 0, 0.5 * h), &soup);
       AddBlock(Vec3(-bore, bore, 0.25 * h), Vec3(0, 0, 0.5 * h), &soup);
       break;
-    case 12: {  // Any triangles.
-      Random random(part.seed);
-      const int count = 1 + static_cast<int>(random.NextBits() % 40);
-      for (int i = 0; i < count; ++i) {
-        soup.vertices.emplace_back(random.Uniform(-r, r), random.Uniform(-r, r), random.Uniform(0, h));
-        const auto size = static_cast<std::uint64_t>(i + 1);
-        soup.triangles.push_back({static_cast<std::uint32_t>(random.NextBits() % size),
-                                  static_cast<std::uint32_t>(random.NextBits() % size),
-                                  static_cast<std::uint32_t>(random.NextBits() % size)});
-      }
+    case 12:
+      AddAnyTriangles(part.seed, r, h, &soup);
       break;
-    }
-    default: {  // A turned part of any profile.
-      Random random(part.seed);
-      Profile profile{{0, 0}};
-      const int count = 1 + static_cast<int>(random.NextBits() % 6);
-      for (int i = 0; i < count; ++i) {
-        profile.emplace_back(r * static_cast<double>(random.NextBits() % 5) / 4,
-                             h * static_cast<double>(random.NextBits() % 9) / 8);
-      }
-      profile.emplace_back(0, profile.back().second);
-      AddTurned(profile, 3 + static_cast<int>(random.NextBits() % 22), Vec3::Zero(), &soup);
+    default:
+      AddAnyTurned(part.seed, r, h, &soup);
       break;
-    }
   }
   return soup;
 }

@@ -368,6 +368,7 @@ Unit GapExplainer::ListCandidates() const {
     }
   }
   std::vector<std::pair<std::size_t, OccurrenceId>> ranked;
+  ranked.reserve(counts.size());
   for (const auto& [id, count] : counts) {
     ranked.emplace_back(count, id);
   }

@@ -447,11 +447,11 @@ Result<void> FindOrder(const CompileOptions& options, Model* model) {
 
 /** Makes the bodies and mates of a product, and finds its order of assembly; parts without a shape
  are pending. */
-Result<std::shared_ptr<Model>> MakeOrderedModel(
-    const std::shared_ptr<const product::Product>& product, const PartShapes& shapes,
-    const CompileOptions& options) {
+Result<std::shared_ptr<Model>> MakeOrderedModel(std::shared_ptr<const product::Product> product,
+                                                const PartShapes& shapes,
+                                                const CompileOptions& options) {
   auto model = std::make_shared<Model>();
-  model->product = product;
+  model->product = std::move(product);
   model->seed = options.seed;
   model->pairs = options.pairs;
   if (const auto made = MakeBodies(shapes, model.get()); !made) {
@@ -555,11 +555,11 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   if (problem) {
     diagnostics->Warn("shape-cache", problem->where, problem->message, problem->remedy);
   }
-  auto model = MakeOrderedModel(product, shapes, options);
+  auto model = MakeOrderedModel(std::move(product), shapes, options);
   if (model && !(*model)->sequence.screws.empty()) {
     // What was found to be a screw is one from now on, and the order is made with it.
-    if (const auto with_screws = AddScrewMates(*product, (*model)->sequence.screws)) {
-      model = MakeOrderedModel(with_screws, shapes, options);
+    if (auto with_screws = AddScrewMates(*(*model)->product, (*model)->sequence.screws)) {
+      model = MakeOrderedModel(std::move(with_screws), shapes, options);
     }
   }
   if (!model) {

@@ -79,7 +79,7 @@ class HubTest : public ::testing::Test {
   /** Publishes what is new, as the server does at each frame. */
   void Publish(double seconds) {
     constexpr double kFrame = 0.005;  // More often than there are frames [s].
-    for (double passed = 0; passed < seconds; passed += kFrame) {
+    for (int frame = 0; frame * kFrame < seconds; ++frame) {
       log_.Pass(kFrame);
       hub_.PublishFrame();
     }
