@@ -4,19 +4,32 @@ import WebSocket from "ws";
 import { kPatienceMs, signIn } from "./harness.mjs";
 import { compose, inverse } from "./poses.mjs";
 
+// Kinds of frames, and the size of a credit's item [bytes] (docs/protocol.md).
+const kInput = 16;
+const kCredit = 17;
+const kCreditSize = 4;
 const kInputMs = 16;  // between two inputs of a hand that is led
 const kStep = 0.002;  // [m] of the hand from one to the next
+const kNoFrameMs = 300;  // without a frame, after which it goes on
+const kStepsAFrame = 2;  // 30 frames of session time a second
 const kHalf = 0.02;  // [m] that a shaft sticks out yet when it is half in
 
-/** The frame of docs/protocol.md that says where a hand is; it grips. */
-function makeInput({ p, q }) {
-  const kHeader = 32;
-  const frame = Buffer.alloc(kHeader + 40);
+const kHeader = 32;
+
+/** A frame of docs/protocol.md with one item. */
+function makeFrame(kind, itemSize) {
+  const frame = Buffer.alloc(kHeader + itemSize);
   frame.write("HVAS", 0, "latin1");
   frame.writeUInt16LE(1, 4); // version
-  frame.writeUInt16LE(16, 6); // Input
+  frame.writeUInt16LE(kind, 6);
   frame.writeUInt32LE(frame.length, 8);
   frame.writeUInt32LE(1, 20); // one item
+  return frame;
+}
+
+/** Says where a hand is; it grips. */
+function makeInput({ p, q }) {
+  const frame = makeFrame(kInput, 40);
   frame.writeUInt32LE(1, kHeader + 4); // it grips
   [...p, ...q].forEach((v, k) => frame.writeFloatLE(v, kHeader + 8 + 4 * k));
   return frame;
@@ -42,7 +55,7 @@ export class StudyPeer {
   async #connect(link) {
     const { origin, cookie } = await signIn(link);
     const socket = new WebSocket(`${origin.replace("http", "ws")}/ws`, { origin, headers: { Cookie: cookie } });
-    socket.on("message", (data, isBinary) => !isBinary && this.hear(JSON.parse(data)));
+    socket.on("message", (data, isBinary) => (isBinary ? this.#acknowledge(socket, data) : this.hear(JSON.parse(data))));
     await once(socket, "open");
     return socket;
   }
@@ -50,6 +63,17 @@ export class StudyPeer {
   async leave() {
     clearInterval(this.#leading);
     (await this.#socket).terminate();
+  }
+
+  #acknowledge(socket, frames) {
+    let seq = 0;
+    for (let at = 0; at < frames.length; at += frames.readUInt32LE(at + 8)) {
+      seq = frames.readUInt32LE(at + 12);
+    }
+    const credit = makeFrame(kCredit, kCreditSize);
+    credit.writeUInt32LE(seq, kHeader);
+    socket.send(credit);
+    this.#news.emit("frame");
   }
 
   hear(message) {
@@ -107,14 +131,17 @@ export class StudyPeer {
     return { p: [p[0], p[1], p[2] + height], q };
   }
 
-  /** Leads the hand straight to a pose; it turns at the end of the way. */
+  /** Leads the hand straight to a pose; it turns at the end of the way. It goes by the session's time, of which frames tell:
+   on a busy machine it is as slow as the session. */
   async #moveTo({ p, q }) {
     const from = this.#hand.p;
     const steps = Math.max(1, Math.ceil(Math.hypot(...p.map((v, k) => v - from[k])) / kStep));
     for (let n = 1; n <= steps; n++) {
       this.#hand = { p: p.map((v, k) => from[k] + ((v - from[k]) * n) / steps), q: n === steps ? q : this.#hand.q };
-      // eslint-disable-next-line no-restricted-globals -- The pace of a hand, not a wait for what it does.
-      await new Promise((resolve) => setTimeout(resolve, kInputMs));
+      if (n % kStepsAFrame === 0 || n === steps) {
+        // Where nothing moves, or the trial is over, none comes.
+        await once(this.#news, "frame", { signal: AbortSignal.timeout(kNoFrameMs) }).catch(() => {});
+      }
     }
   }
 
