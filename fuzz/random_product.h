@@ -38,7 +38,7 @@ struct RandomNode {
 struct RandomOccurrence {
   int part{0};
   int node{0};
-  int place{0};  ///< On, in, beside the one before it, at the same place, anywhere, far away.
+  int place{0};  ///< Relation to the part before it: on, in, beside, at its place, anywhere, far away.
   int turn{0};
   int x{0}, y{0}, z{0};
   int name{0};
