@@ -7,9 +7,9 @@
 // COUNT damaged copies of each FILE. Exit status 1 when the program's own import fails to answer,
 // or when a refusal says nothing.
 //
-// With --limits each copy is opened as the program opens a file, mates included, in a process of its
-// own; the most memory that this process and the reading one had together, and the longest time, are
-// printed. Exit status 1 also when one went beyond the limits that files have by default.
+// With --limits each copy is opened as the program opens a file, mates included, in a process of
+// its own; the most memory that this process and the reading one had together, and the longest
+// time, are printed. Exit status 1 also when one went beyond the limits that files have by default.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,12 +1,13 @@
-// Products of forms that nobody drew against everything that follows the import: welding, mates, side
-// file, model, ticks, exports, and with --plan the order, its instructions and taking apart. Each product
-// is worked at in a process of its own; what kills or stops that process, an exception, an index that
-// leads nowhere and a number that is not finite are findings, which are made as simple as possible.
+// Products of forms that nobody drew against everything that follows the import: welding, mates,
+// side file, model, ticks, exports, and with --plan the order, its instructions and taking apart.
+// Each product is worked at in a process of its own; what kills or stops that process, an
+// exception, an index that leads nowhere and a number that is not finite are findings, which are
+// made as simple as possible.
 //
 //   product_storm [COUNT] [--seed N] [--plan] [--minutes M]
 //
-// COUNT products (500), of the seeds N, N + 1 and so on (1): a finding is repeated by `1 --seed` and its
-// own. It ends earlier after M minutes. Exit status 1 when there are findings.
+// COUNT products (500), of the seeds N, N + 1 and so on (1): a finding is repeated by `1 --seed`
+// and its own. It ends earlier after M minutes. Exit status 1 when there are findings.
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -14,8 +15,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -79,11 +80,11 @@ constexpr rlim_t kSlower = 1;
 #endif
 constexpr rlim_t kSeconds = 10 * kSlower;      // Of CPU, after which a case counts as hanging.
 constexpr rlim_t kPlanSeconds = 60 * kSlower;  // With a plan.
-// Of CPU, after which the preparation is stopped, as a user stops it: the time of the order grows with what
-// lies in one another, and is no finding. What does not end then is one. A choice.
+// Of CPU, after which the preparation is stopped, as a user stops it: the time of the order grows
+// with what lies in one another, and is no finding. What does not end then is one. A choice.
 constexpr double kPatience = 0.7 * kSlower;
 constexpr rlim_t kMemory = rlim_t{4} << 30;
-constexpr int kMostShrinks = 300;       // Attempts to make a finding simpler: a choice.
+constexpr int kMostShrinks = 300;                // Attempts to make a finding simpler: a choice.
 constexpr double kMostShrinking = 30 * kSlower;  // Of CPU for these attempts [s]: a choice.
 
 /** How far the work on a product has come, in memory that the child shares. */
@@ -119,7 +120,8 @@ void Demand(bool condition, const std::string& what) {
 /** Errors are answers, if they say something. */
 void CheckError(const hvas::Error& error) {
   Demand(error.code != hvas::ErrorCode::kInternal, "an internal error: " + error.message);
-  Demand(!error.message.empty() && !error.where.empty(), "an error that says nothing: " + error.message);
+  Demand(!error.message.empty() && !error.where.empty(),
+         "an error that says nothing: " + error.message);
 }
 
 bool IsFinite(const hvas::spatial::Box& box) {
@@ -283,7 +285,8 @@ class Work {
     const auto bytes = hvas::product::SerialiseProduct(product);
     const auto again = hvas::product::DeserialiseProduct(bytes);
     Demand(again.has_value(), "a product that was written cannot be read");
-    Demand(hvas::product::SerialiseProduct(*again) == bytes, "a product is not read as it was written");
+    Demand(hvas::product::SerialiseProduct(*again) == bytes,
+           "a product is not read as it was written");
     Begin("glb");
     for (const bool is_fine : {false, true}) {
       if (const auto glb = hvas::cad::MakeGlb(product, is_fine); !glb) {
@@ -316,7 +319,8 @@ class Work {
     for (const auto& step : model.sequence.steps) {
       Demand(step.extraction_W.allFinite() && std::abs(step.extraction_W.norm() - 1) < 1e-6,
              "a way out has no direction");
-      Demand(std::isfinite(step.engage_distance) && step.offset_W.allFinite(), "a step is not finite");
+      Demand(std::isfinite(step.engage_distance) && step.offset_W.allFinite(),
+             "a step is not finite");
     }
     Demand(std::isfinite(model.table_z) && model.centre_W.allFinite() &&
                std::isfinite(model.transfer_radius),
@@ -326,7 +330,8 @@ class Work {
   /** Ten ticks of an assembly by a simulated person, and ten more, a second later. */
   static void RunTicks(const std::shared_ptr<const hvas::simulation::Model>& model) {
     hvas::assembly::AssemblySetup setup(
-        model, hvas::assembly::MakePersonHand(*model, hvas::assembly::MakePersonTick({}), {}, 1), nullptr);
+        model, hvas::assembly::MakePersonHand(*model, hvas::assembly::MakePersonTick({}), {}, 1),
+        nullptr);
     hvas::simulation::RunLockstep(setup.MakeExecution(0.01));
     for (const auto& state : setup.simulation().physics().parts()) {
       Demand(hvas::spatial::IsFinite(state.X_WB), "a part's pose is not finite");
@@ -344,8 +349,7 @@ class Work {
       options.step = i;
       const hvas::spatial::Pose& X_WB = model->bodies[steps[i].occurrence.index()].X_WB_goal;
       const double out = 0.5 * steps[i].engage_distance;
-      options.X_WB_start =
-          hvas::spatial::Pose(X_WB.q(), X_WB.p() + out * steps[i].extraction_W);
+      options.X_WB_start = hvas::spatial::Pose(X_WB.q(), X_WB.p() + out * steps[i].extraction_W);
       options.contact_in_holes = Has(5);
       options.threads_turn = Has(5);
       auto run = hvas::assembly::SteppedRun::Create(model, options);
@@ -440,7 +444,7 @@ class Work {
 struct Outcome {
   bool is_good{true};
   Progress progress;
-  std::string what;     ///< Empty where it is good.
+  std::string what;  ///< Empty where it is good.
   double cpu_s{0};
 };
 
@@ -481,7 +485,8 @@ class Storm {
       }
     }
     fmt::print(
-        "{} products of seed {}: {} opened, {} with mates, {} prepared ({} stopped), {} with a part in the hand; longest "
+        "{} products of seed {}: {} opened, {} with mates, {} prepared ({} stopped), {} with a "
+        "part in the hand; longest "
         "{:.1f} s of CPU (seed {}); {} findings\n",
         i, options_.seed, opened_, mated_, prepared_, stopped_, held_, longest_s_, longest_seed_,
         findings_.size());
@@ -526,7 +531,8 @@ class Storm {
   }
 
   static std::string NameOf(int number) {
-    return number == SIGXCPU || number == SIGKILL ? "hangs" : fmt::format("ends by {}", strsignal(number));
+    return number == SIGXCPU || number == SIGKILL ? "hangs"
+                                                  : fmt::format("ends by {}", strsignal(number));
   }
 
   /** What a child said last, without the numbers that differ from case to case. */
@@ -537,7 +543,8 @@ class Storm {
     return text.size() > kMost ? text.substr(0, kMost) : text;
   }
 
-  void Report(std::uint64_t seed, const rc::Shrinkable<RandomProduct>& product, const Outcome& first) {
+  void Report(std::uint64_t seed, const rc::Shrinkable<RandomProduct>& product,
+              const Outcome& first) {
     auto& seeds = findings_[first.what];
     seeds.push_back(seed);
     if (seeds.size() > 1) {
@@ -592,7 +599,10 @@ int main(int argc, char** argv) {
     } else if (const long count = std::strtol(words[i].c_str(), nullptr, 10); count > 0) {
       options.count = count;
     } else {
-      fmt::print(stderr, "usage: {} [COUNT] [--seed N] [--plan] [--minutes M]   COUNT products, 500 by default\n", argv[0]);
+      fmt::print(
+          stderr,
+          "usage: {} [COUNT] [--seed N] [--plan] [--minutes M]   COUNT products, 500 by default\n",
+          argv[0]);
       return 1;
     }
   }

@@ -34,8 +34,8 @@ const auto& PickFrom(const Table& table, int number) {
   return table[static_cast<std::size_t>(number) % std::size(table)];
 }
 
-// Lengths for the scale of a part: equal ones fit each other, near ones fit with play or too tightly, and
-// what has no length is flat, or a needle. The first one is the simplest.
+// Lengths for the scale of a part: equal ones fit each other, near ones fit with play or too
+// tightly, and what has no length is flat, or a needle. The first one is the simplest.
 constexpr std::array kLengths{1.0, 0.5, 0.25, 2.0, 0.0, 0.999, 0.501, 0.4999, 1e-3, 10.0};
 // Scales of products [m]: 1e-6 to 1e3.
 constexpr std::array kScales{1e-2, 1e-3, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e-4, 1e-5, 1e-6};
@@ -105,8 +105,9 @@ constexpr std::array kWords{"part",
                             "\U0001f529",
                             "\ufeff",
                             ""};
-constexpr int kLongNames = 3;      // Names after the words: long ones.
-constexpr std::size_t kLong = 20'000;  // Bytes of a long name: more than any field on a screen holds.
+constexpr int kLongNames = 3;  // Names after the words: long ones.
+constexpr std::size_t kLong =
+    20'000;  // Bytes of a long name: more than any field on a screen holds.
 
 // Fits and sizes that a side file may state.
 constexpr std::array kFits{"H7/g6", "H7/p6", "thread", "g6", "H7", "ZZ99/a1", "H7/s6", ""};
@@ -114,7 +115,8 @@ constexpr std::array kFits{"H7/g6", "H7/p6", "thread", "g6", "H7", "ZZ99/a1", "H
 /** Points of a profile in the half plane of a lathe, from the axis outward and back to it. */
 using Profile = std::vector<std::pair<double, double>>;  // Radius and height.
 
-/** The surface of revolution of a profile, closed where the profile is, with `sides` corners around. */
+/** The surface of revolution of a profile, closed where the profile is, with `sides` corners
+ * around. */
 void AddTurned(const Profile& profile, int sides, const Vec3& at, TriangleSoup* soup) {
   const auto first = static_cast<std::uint32_t>(soup->vertices.size());
   const auto count = static_cast<std::uint32_t>(profile.size());
@@ -382,10 +384,11 @@ rc::Gen<int> GeneratePlace() {
 rc::Gen<RandomPart> GeneratePart() {
   return rc::gen::build<RandomPart>(
       rc::gen::set(&RandomPart::form, Below(kForms)), rc::gen::set(&RandomPart::scale, Seldom(8)),
-      rc::gen::set(&RandomPart::radius, GenerateLength()), rc::gen::set(&RandomPart::bore, GenerateLength()),
-      rc::gen::set(&RandomPart::length, GenerateLength()), rc::gen::set(&RandomPart::stretch, Seldom(10)),
-      rc::gen::set(&RandomPart::damage, Seldom(8)), rc::gen::set(&RandomPart::name, Below(kNames)),
-      rc::gen::set(&RandomPart::surface, Seldom(2)),
+      rc::gen::set(&RandomPart::radius, GenerateLength()),
+      rc::gen::set(&RandomPart::bore, GenerateLength()),
+      rc::gen::set(&RandomPart::length, GenerateLength()),
+      rc::gen::set(&RandomPart::stretch, Seldom(10)), rc::gen::set(&RandomPart::damage, Seldom(8)),
+      rc::gen::set(&RandomPart::name, Below(kNames)), rc::gen::set(&RandomPart::surface, Seldom(2)),
       rc::gen::set(&RandomPart::seed, rc::gen::inRange<std::uint32_t>(0, 1'000'000)));
 }
 
@@ -398,23 +401,25 @@ rc::Gen<RandomNode> GenerateNode() {
 }
 
 rc::Gen<RandomOccurrence> GenerateOccurrence() {
-  return rc::gen::build<RandomOccurrence>(
-      rc::gen::set(&RandomOccurrence::part, Below(6)), rc::gen::set(&RandomOccurrence::node, Below(8)),
-      rc::gen::set(&RandomOccurrence::place, GeneratePlace()),
-      rc::gen::set(&RandomOccurrence::turn, Seldom(16)),
-      rc::gen::set(&RandomOccurrence::x, Below(4)), rc::gen::set(&RandomOccurrence::y, Below(4)),
-      rc::gen::set(&RandomOccurrence::z, Below(4)),
-      rc::gen::set(&RandomOccurrence::name, Below(kNames)));
+  return rc::gen::build<RandomOccurrence>(rc::gen::set(&RandomOccurrence::part, Below(6)),
+                                          rc::gen::set(&RandomOccurrence::node, Below(8)),
+                                          rc::gen::set(&RandomOccurrence::place, GeneratePlace()),
+                                          rc::gen::set(&RandomOccurrence::turn, Seldom(16)),
+                                          rc::gen::set(&RandomOccurrence::x, Below(4)),
+                                          rc::gen::set(&RandomOccurrence::y, Below(4)),
+                                          rc::gen::set(&RandomOccurrence::z, Below(4)),
+                                          rc::gen::set(&RandomOccurrence::name, Below(kNames)));
 }
 
 constexpr int kLists = 8;
 
 rc::Gen<RandomStatement> GenerateStatement() {
-  return rc::gen::build<RandomStatement>(
-      rc::gen::set(&RandomStatement::list, Below(kLists)), rc::gen::set(&RandomStatement::a, Below(8)),
-      rc::gen::set(&RandomStatement::b, Below(8)), rc::gen::set(&RandomStatement::face_a, Below(8)),
-      rc::gen::set(&RandomStatement::face_b, Below(8)),
-      rc::gen::set(&RandomStatement::choice, Below(8)));
+  return rc::gen::build<RandomStatement>(rc::gen::set(&RandomStatement::list, Below(kLists)),
+                                         rc::gen::set(&RandomStatement::a, Below(8)),
+                                         rc::gen::set(&RandomStatement::b, Below(8)),
+                                         rc::gen::set(&RandomStatement::face_a, Below(8)),
+                                         rc::gen::set(&RandomStatement::face_b, Below(8)),
+                                         rc::gen::set(&RandomStatement::choice, Below(8)));
 }
 
 /** None, few or many of something. */
@@ -440,7 +445,7 @@ Json MakeSide(const Product& product, int occurrence, int face, bool is_feature)
 }
 
 void AddStatement(const RandomStatement& random, const Product& product, Json* document) {
-  static constexpr std::array kRelations{"parallel", "perpendicular", "angle",   "flush",
+  static constexpr std::array kRelations{"parallel", "perpendicular", "angle",    "flush",
                                          "distance", "tangent",       "parallel", "hole_to_hole"};
   const std::string a = PathOf(product, random.a);
   const std::string b = PathOf(product, random.b);
@@ -581,7 +586,8 @@ std::string Describe(const RandomProduct& random) {
                                  PickFrom(kScales, random.scale), random.name, random.options);
   for (const RandomPart& p : random.parts) {
     text += fmt::format(
-        "  part: form {}, scale {:g}, radius {:g}, bore {:g}, length {:g}, stretch {:g} of axis {}, damage "
+        "  part: form {}, scale {:g}, radius {:g}, bore {:g}, length {:g}, stretch {:g} of axis "
+        "{}, damage "
         "{}, surface {}, seed {}, name {:.40}\n",
         p.form, PickFrom(kPartScales, p.scale), PickFrom(kLengths, p.radius),
         PickFrom(kLengths, p.bore), PickFrom(kLengths, p.length), PickFrom(kStretches, p.stretch),
@@ -592,13 +598,13 @@ std::string Describe(const RandomProduct& random) {
                         Json(MakeName(n.name)).dump());
   }
   for (const RandomOccurrence& o : random.occurrences) {
-    text += fmt::format("  occurrence: part {}, node {}, place {}, turn {}, at {} {} {}, name {:.40}\n",
-                        o.part, o.node, o.place, o.turn, o.x, o.y, o.z,
-                        Json(MakeName(o.name)).dump());
+    text +=
+        fmt::format("  occurrence: part {}, node {}, place {}, turn {}, at {} {} {}, name {:.40}\n",
+                    o.part, o.node, o.place, o.turn, o.x, o.y, o.z, Json(MakeName(o.name)).dump());
   }
   for (const RandomStatement& s : random.statements) {
-    text += fmt::format("  statement: list {}, a {}:{}, b {}:{}, choice {}\n", s.list, s.a, s.face_a,
-                        s.b, s.face_b, s.choice);
+    text += fmt::format("  statement: list {}, a {}:{}, b {}:{}, choice {}\n", s.list, s.a,
+                        s.face_a, s.b, s.face_b, s.choice);
   }
   return text;
 }

@@ -9,17 +9,17 @@
 
 #include "product/product.h"
 
-/** Products of forms that nobody drew, for the storm. A product is described by small numbers, each of
- which chooses from a table or is a number of grid steps, so that it becomes simpler when they get
- smaller: rapidcheck shrinks a case in this way. */
+/** Products of forms that nobody drew, for the storm. A product is described by small numbers, each
+ of which chooses from a table or is a number of grid steps, so that it becomes simpler when they
+ get smaller: rapidcheck shrinks a case in this way. */
 namespace hvas::fuzz {
 
 /** A part: triangles as a mesh file has them. */
 struct RandomPart {
   int form{0};
-  int scale{0};    ///< Against the product's.
-  int radius{0};   ///< Outer radius, or half the width.
-  int bore{0};     ///< Inner radius.
+  int scale{0};   ///< Against the product's.
+  int radius{0};  ///< Outer radius, or half the width.
+  int bore{0};    ///< Inner radius.
   int length{0};
   int stretch{0};  ///< One axis of all points: by 1, by little, to nothing.
   int damage{0};   ///< What the mesh lacks.
@@ -38,7 +38,8 @@ struct RandomNode {
 struct RandomOccurrence {
   int part{0};
   int node{0};
-  int place{0};  ///< Relation to the part before it: on, in, beside, at its place, anywhere, far away.
+  int place{
+      0};  ///< Relation to the part before it: on, in, beside, at its place, anywhere, far away.
   int turn{0};
   int x{0}, y{0}, z{0};
   int name{0};
@@ -59,17 +60,19 @@ struct RandomProduct {
   std::vector<RandomNode> nodes;
   std::vector<RandomOccurrence> occurrences;
   std::vector<RandomStatement> statements;
-  int options{0};  ///< Which part comes first, which is the base, what may not yield, a fit for all.
+  int options{
+      0};  ///< Which part comes first, which is the base, what may not yield, a fit for all.
 };
 
 /** Generates products that are shrunk by fewer parts and smaller numbers. */
 [[nodiscard]] rc::Gen<RandomProduct> GenerateProduct();
 
-/** Builds the product as the readers of mesh files do (cad::BuildTrianglePart, cad::ProductTree). Errors
- of the readers leave parts out. */
+/** Builds the product as the readers of mesh files do (cad::BuildTrianglePart, cad::ProductTree).
+ Errors of the readers leave parts out. */
 [[nodiscard]] product::Product Build(const RandomProduct& random);
 
-/** Writes what is stated of a product to the side file of `file`; nothing where nothing is stated. */
+/** Writes what is stated of a product to the side file of `file`; nothing where nothing is stated.
+ */
 void WriteSideFile(const RandomProduct& random, const product::Product& product,
                    const std::filesystem::path& file);
 

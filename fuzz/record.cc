@@ -1,5 +1,5 @@
-// A record: all that replay, report, export and the studio's shelf take out of it. Besides the damaged bytes, a
-// sound copy with one value of another kind, or with rows gone.
+// A record: all that replay, report, export and the studio's shelf take out of it. Besides the
+// damaged bytes, a sound copy with one value of another kind, or with rows gone.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -21,13 +21,35 @@
 namespace hvas::fuzz {
 namespace {
 
-constexpr std::array kColumns{
-    "chunk.id",          "chunk.first_t_ns", "chunk.last_t_ns", "chunk.count",    "chunk.checksum",
-    "chunk.ticks",       "event.id",         "event.t_ns",      "event.kind",     "event.occurrence",
-    "event.json",        "event.checksum",   "command.t_ns",    "command.number", "command.kind",
-    "command.json",      "frame.t_ns",       "frame.bytes",     "meta.key",       "meta.value",
-    "attachment.name",   "attachment.bytes", "seal.id",         "seal.t_ns",      "seal.chunks",
-    "seal.entries",      "seal.hash",        "seal.is_last",    "schema_version.version"};
+constexpr std::array kColumns{"chunk.id",
+                              "chunk.first_t_ns",
+                              "chunk.last_t_ns",
+                              "chunk.count",
+                              "chunk.checksum",
+                              "chunk.ticks",
+                              "event.id",
+                              "event.t_ns",
+                              "event.kind",
+                              "event.occurrence",
+                              "event.json",
+                              "event.checksum",
+                              "command.t_ns",
+                              "command.number",
+                              "command.kind",
+                              "command.json",
+                              "frame.t_ns",
+                              "frame.bytes",
+                              "meta.key",
+                              "meta.value",
+                              "attachment.name",
+                              "attachment.bytes",
+                              "seal.id",
+                              "seal.t_ns",
+                              "seal.chunks",
+                              "seal.entries",
+                              "seal.hash",
+                              "seal.is_last",
+                              "schema_version.version"};
 constexpr std::array kValues{"'x'",
                              "''",
                              "-1",
