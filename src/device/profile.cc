@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "device/known_profiles.h"
 
 namespace hvas::device {
@@ -147,7 +148,7 @@ std::vector<SourcedProfile> ReadKnownProfiles() {
 }  // namespace
 
 Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& where) {
-  const json document = json::parse(text, nullptr, false);
+  const json document = ParseJson<json>(text);
   if (!document.is_object()) {
     return Fail(ErrorCode::kUnreadable, "the file is not a JSON object", where,
                 "see data/schemas/device_profile.schema.json");

@@ -9,6 +9,9 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
+#include "base/clock.h"
+#include "base/error_name.h"
+#include "base/parse_json.h"
 #include "studio/event_json.h"
 #include "studio/json_fields.h"
 #include "studio/responses.h"
@@ -49,9 +52,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       : connection_(std::move(socket), shared->connections), shared_(std::move(shared)) {}
 
   void Run() {
-    if (!connection_.is_in()) {
-      return;
-    }
     error_code ignored;
     wire().socket().set_option(tcp::no_delay(true), ignored);
     if (shared_->tls == nullptr) {
@@ -94,6 +94,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void ReadHeader() {
+    connection_.SetIdle(true);
     header_.emplace();
     header_->header_limit(kMaxHeader);
     header_->body_limit(
@@ -114,6 +115,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Route() {
     const auto& request = header_->get();
     is_last_ = !request.keep_alive();
+    connection_.SetIdle(false);
+    visitor_.reset();
     const std::string_view origin = FieldOf(request, http::field::origin);
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
@@ -131,6 +134,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kInvalid, "a page of another origin may not access this server",
                      "Origin", "open the address that the program printed"});
     }
+    visitor_ = access.FindVisitor(FieldOf(request, http::field::cookie));
+    if (visitor_ && !connection_.Enter(*visitor_)) {
+      return Refuse(http::status::too_many_requests,
+                    {ErrorCode::kOutOfResource, "too many connections by this link are busy", "",
+                     "wait until others are served, or close another page"});
+    }
     const std::string_view target = ToView(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
     if (request.method() == http::verb::post && path == "/api/session") {
@@ -140,14 +149,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       const auto accepted = FieldOf(request, http::field::accept_encoding);
       return Reply(MakeAssetResponse(path, accepted));
     }
-    const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
-    if (!role) {
+    if (!visitor_) {
       return Refuse(http::status::unauthorized,
                     {ErrorCode::kInvalid, "this browser has no session", "",
                      "open the link that the program printed, including its token"});
     }
-    connection_.MarkAuthenticated();
-    RouteKnown(*role, path, is_upgrade);
+    RouteKnown(*visitor_, path, is_upgrade);
   }
 
   /** Redirects to the page by https; the browser keeps the token in the fragment. @pre the host is
@@ -162,28 +169,28 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     Send(std::move(response));
   }
 
-  void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
+  void RouteKnown(const Visitor& visitor, std::string_view path, bool is_upgrade) {
     const http::verb method = header_->get().method();
     if (path == "/ws" && is_upgrade) {
       wire().expires_never();
-      StartSocketSession(std::move(connection_), shared_, role, header_->get());
+      StartSocketSession(std::move(connection_), shared_, visitor, header_->get());
     } else if (method == http::verb::get) {
       try {
-        Reply(MakeApiResponse(shared_->workbench, DecodePercent(path),
-                              shared_->hub.IsShielded(role),
+        Reply(MakeApiResponse(shared_->workbench, DecodePercent(path), visitor,
+                              shared_->hub.IsShielded(visitor.role),
                               FieldOf(header_->get(), http::field::accept_encoding)));
       } catch (const std::exception& failed) {
         Refuse(http::status::internal_server_error,
                {ErrorCode::kInternal, failed.what(), std::string(path), "reload the page"});
       }
     } else if (path == "/api/upload" && method == http::verb::post) {
-      ReadUpload(role);
+      ReadUpload(visitor);
     } else if (path == "/api/end_sharing" && method == http::verb::post) {
       ReadJson(&HttpSession::EndSharing);
     } else if (path == "/api/link" && method == http::verb::post) {
-      if (role != Role::kOperator) {
+      if (visitor.role != Role::kOperator) {
         Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
-                                         "ask the user in control for a link"});
+                                         "ask the user who started this studio for a link"});
       } else {
         ReadJson(&HttpSession::MakeLink);
       }
@@ -218,8 +225,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                          self->RefuseBody(error);
                        } else {
                          self->cookie_ = FieldOf(parser->get(), http::field::cookie);
-                         (*self.*handler)(Json::parse(parser->get().body(), nullptr,
-                                                      /*allow_exceptions=*/false));
+                         (*self.*handler)(ParseJson<Json>(parser->get().body()));
                        }
                      });
   }
@@ -230,13 +236,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return Refuse(http::status::unauthorized, admission.error());
     }
     shared_->SaveAccessState();
-    if (admission->role == Role::kParticipant) {
+    Note({{"request", "come_in"}, {"as", ToString(admission->visitor)}});
+    if (admission->visitor.role == Role::kParticipant) {
       shared_->UpdateParticipantLink();
     }
     http::response<http::string_body> response(http::status::ok, 11);
     response.set(http::field::set_cookie, admission->set_cookie);
     response.set(http::field::content_type, "application/json");
-    response.body() = Json{{"role", ToString(admission->role)}}.dump();
+    response.body() = Json{{"role", ToString(admission->visitor.role)}}.dump();
     Send(std::move(response));
   }
 
@@ -248,6 +255,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kInvalid, "there is no such role", "role",
                      "request a link for an operator or a viewer"});
     }
+    if (IsSingleUse(*role) && !visitor_->is_owner) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid,
+                     "only the user who started this studio can invite others to work here", "role",
+                     "ask that user for a link, or pass on a link for viewers"});
+    }
     const Access& access = *shared_->access;
     const ServerOptions& options = shared_->options;
     Json origins = Json::array();
@@ -257,6 +270,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     const std::string token = shared_->access->MakeInvitation(*role);
     shared_->SaveAccessState();
+    Note({{"request", "make_link"}, {"for", ToString(*role)}});
     SendJson(http::status::ok, {{"token", token},
                                 {"role", ToString(*role)},
                                 {"is_for_one", IsSingleUse(*role)},
@@ -274,29 +288,33 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
            "ask that user, or close this page to leave"});
     }
     shared_->SaveAccessState();
+    Note({{"request", "end_sharing"}});
     shared_->UpdateParticipantLink();
     shared_->hub.CloseRevoked();
     SendJson(http::status::ok, Json::object());
   }
 
-  void ReadUpload(Role role) {
-    if (role != Role::kOperator) {
+  void ReadUpload(const Visitor& visitor) {
+    if (visitor.role != Role::kOperator) {
       return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
                                               "ask for an operator's link"});
     }
     if (!IsShort(shared_->options.max_upload)) {
       return;
     }
+    const std::uint32_t link = visitor.link();
     const std::string name = NameOfUpload(ToView(header_->get().target()));
-    const std::filesystem::path folder = shared_->options.upload_folder / MakeToken();
-    std::error_code failed;
-    std::filesystem::create_directory(folder, failed);
-    const std::filesystem::path file = folder / name;
+    const auto folder = shared_->hub.uploads().Begin(shared_->options.upload_folder, link);
+    if (!folder) {
+      return Refuse(http::status::too_many_requests, folder.error());
+    }
+    const std::filesystem::path file = *folder / name;
     auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
     parser->body_limit(shared_->options.max_upload);
     error_code error;
     parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
-    if (failed || error) {
+    if (error) {
+      shared_->hub.uploads().GiveUp(link);
       return Refuse(
           http::status::insufficient_storage,
           {ErrorCode::kOutOfResource, "the file cannot be saved", name, "free disk space"});
@@ -304,16 +322,31 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     wire().expires_after(kUploadTime);
     http::async_read(
         connection_, buffer_, *parser,
-        [self = shared_from_this(), parser, folder, file, name](error_code read, std::size_t) {
+        [self = shared_from_this(), parser, link, file, name](error_code read, std::size_t) {
           parser->get().body().close();
           if (read) {
-            std::error_code ignored;
-            std::filesystem::remove_all(folder, ignored);
+            self->shared_->hub.uploads().GiveUp(link);
             return self->RefuseBody(read);
           }
-          self->SendJson(http::status::ok, {{"upload", self->shared_->hub.AddUpload(file, name)}});
+          self->FinishUpload(link, file, name);
         });
   }
+
+  void FinishUpload(std::uint32_t link, const std::filesystem::path& file,
+                    const std::string& name) {
+    const SceneOpener& opener = shared_->workbench->opener();
+    const std::string id = shared_->hub.uploads().Finish(
+        link, {file, name},
+        [&opener](const std::filesystem::path& other) { return opener.IsInUse(other); });
+    Note({{"request", "upload"}, {"name", name}});
+    SendJson(http::status::ok, {{"upload", id}});
+  }
+
+  [[nodiscard]] AuditLog::Entry MakeEntry(Json did) const {
+    return {visitor_ ? ToString(*visitor_) : "stranger", connection_.address(), "", std::move(did)};
+  }
+
+  void Note(Json did) { shared_->audit->Note(MakeEntry(std::move(did))); }
 
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
@@ -384,6 +417,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** Says why not, and ends the connection: what may follow in it is not read. */
   void Refuse(http::status status, const Error& error) {
     is_refused_ = true;
+    shared_->audit->NoteRefusal(
+        visitor_ ? visitor_->link() : AuditLog::kStranger,
+        MakeEntry({{"request", "http"}, {"status", static_cast<int>(status)}}), NameOf(error.code),
+        MonotonicNs());
     SendJson(status, {{"error", ToJson(error)}});
   }
 
@@ -419,6 +456,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** Reads and discards the rest of the request for a while: closing with unread data would reset
    the connection, and the client could lose the response. */
   void End() {
+    connection_.SetIdle(true);  // Nothing is lost where its place is needed.
     wire().expires_after(kLinger);
     if (!connection_.is_tls()) {
       error_code ignored;
@@ -442,7 +480,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer buffer_{kMaxHeader + (64 << 10)};
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
-  std::string cookie_;  ///< Of the request whose body was read.
+  std::string cookie_;              ///< Of the request whose body was read.
+  std::optional<Visitor> visitor_;  ///< Who has sent the request; none: a stranger.
   bool is_refused_{false};
   bool is_last_{false};  ///< The client asked for the end of the connection after this answer.
 };

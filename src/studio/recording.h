@@ -22,6 +22,8 @@ inline constexpr const char* kGlbAttachment = "model.glb";
 inline constexpr const char* kClientEventKind =
     "told";                                       ///< Kind of events in the form that clients got.
 inline constexpr const char* kNameMeta = "name";  ///< Metadata: display name.
+/** Metadata: OpenScene::digest of the product. */
+inline constexpr const char* kProductDigestMeta = "product_digest";
 
 /** A recording in progress: one scene, through all live runs that follow one another. */
 class Recording final : public simulation::Sink {

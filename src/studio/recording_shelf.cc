@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 #include "record/reader.h"
 #include "studio/json_fields.h"
 #include "studio/recording.h"
@@ -23,7 +24,8 @@ namespace {
 
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
-constexpr std::int64_t kNsPerMs = 1'000'000;  // A definition.
+constexpr const char* kSharedFile = "shared.json";  // Digest of the product, by id.
+constexpr std::int64_t kNsPerMs = 1'000'000;        // A definition.
 
 /** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
@@ -112,7 +114,7 @@ class Results {
 
 std::vector<std::string> PathsOf(const record::Meta& meta) {
   std::vector<std::string> paths;
-  const Json parts = Json::parse(TextOf(meta, "model_json"), nullptr, false);
+  const Json parts = ParseJson<Json>(TextOf(meta, "model_json"));
   if (parts.is_array()) {
     for (const Json& part : parts) {
       paths.push_back(TextOr(part, "path", ""));
@@ -129,7 +131,32 @@ bool IsRecordFile(const std::filesystem::directory_entry& item) {
          item.symlink_status(failed).type() == std::filesystem::file_type::regular;
 }
 
+/** Reads a file with an object of texts; empty where there is none. */
+std::map<std::string, std::string> ReadTexts(const std::filesystem::path& file) {
+  std::map<std::string, std::string> texts;
+  const auto text = ReadPrivateFile(file);
+  const Json json = text ? ParseJson<Json>(*text) : Json();
+  if (json.is_object()) {
+    for (const auto& [id, told] : json.items()) {
+      if (told.is_string()) {
+        texts[id] = told.get<std::string>();
+      }
+    }
+  }
+  return texts;
+}
+
+Result<void> WriteTexts(const std::filesystem::path& file,
+                        const std::map<std::string, std::string>& texts) {
+  const Json json(texts);
+  return WriteAtomically(file, json.dump(1, ' ', false, Json::error_handler_t::replace),
+                         FileReaders::kOwner);
+}
+
 }  // namespace
+
+RecordingShelf::RecordingShelf(std::filesystem::path folder)
+    : folder_(std::move(folder)), shared_(ReadTexts(folder_ / kSharedFile)) {}
 
 Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& product) const {
   if (folder_.empty()) {
@@ -154,7 +181,7 @@ Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& produc
   return file;
 }
 
-Json RecordingShelf::List() {
+Json RecordingShelf::List(const std::optional<std::string>& shared_of) {
   const std::lock_guard lock(mutex_);
   std::map<std::string, Entry> entries;
   std::error_code failed;
@@ -175,8 +202,11 @@ Json RecordingShelf::List() {
   const auto names = ReadNames();
   std::vector<Json> list;
   for (const auto& [id, entry] : entries_) {
-    if (!entry.description.is_null()) {
+    const auto shared = shared_.find(id);
+    const bool is_shown = !shared_of || (shared != shared_.end() && shared->second == *shared_of);
+    if (!entry.description.is_null() && is_shown) {
       list.push_back(entry.description);
+      list.back()["is_shared"] = shared != shared_.end();
       const auto given = names.find(id);
       if (given != names.end()) {
         list.back()["name"] = given->second;
@@ -219,6 +249,10 @@ Result<Json> RecordingShelf::Describe(const std::string& id) const {
   if (const auto given = names.find(id); given != names.end()) {
     json["name"] = given->second;
   }
+  {
+    const std::lock_guard lock(mutex_);
+    json["is_shared"] = HasShared(id);
+  }
   const std::string route = "/api/recording/" + id;
   json["scene"] = route + "/scene";
   json["glb"] = route + "/model.glb";
@@ -226,7 +260,7 @@ Result<Json> RecordingShelf::Describe(const std::string& id) const {
   Results results;
   Json& events = json["events"] = Json::array();
   for (const record::Event& event : *told) {
-    Json one = event.kind == kClientEventKind ? Json::parse(event.json, nullptr, false) : Json();
+    Json one = event.kind == kClientEventKind ? ParseJson<Json>(event.json) : Json();
     if (!one.is_object()) {
       continue;
     }
@@ -280,6 +314,9 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
   if (names.erase(id) > 0) {
     (void)WriteNames(names);  // a left-over name without a record does no harm
   }
+  if (shared_.erase(id) > 0) {
+    (void)WriteTexts(folder_ / kSharedFile, shared_);
+  }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
                                     "delete the file manually"))
                 : Result<void>();
@@ -315,24 +352,45 @@ std::string RecordingShelf::MakeName(const std::string& product) {
 }
 
 std::map<std::string, std::string> RecordingShelf::ReadNames() const {
-  std::map<std::string, std::string> names;
-  const auto text = ReadPrivateFile(folder_ / kNamesFile);
-  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
-  if (json.is_object()) {
-    for (const auto& [id, name] : json.items()) {
-      if (name.is_string()) {
-        names[id] = name.get<std::string>();
-      }
-    }
-  }
-  return names;
+  return ReadTexts(folder_ / kNamesFile);
 }
 
 Result<void> RecordingShelf::WriteNames(const std::map<std::string, std::string>& names) const {
-  const Json json(names);
-  return WriteAtomically(folder_ / kNamesFile,
-                         json.dump(1, ' ', false, Json::error_handler_t::replace),
-                         FileReaders::kOwner);
+  return WriteTexts(folder_ / kNamesFile, names);
+}
+
+bool RecordingShelf::IsShared(const std::string& id, const std::string& digest) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = shared_.find(id);
+  return found != shared_.end() && found->second == digest;
+}
+
+Result<void> RecordingShelf::Share(const std::string& id, const product::Product& product,
+                                   const std::string& digest, bool is_shared) {
+  const auto reader = Open(id);
+  if (!reader) {
+    return Unexpected(reader.error());
+  }
+  // Records of before this metadata name the product only.
+  const std::string recorded = TextOf(reader->meta(), kProductDigestMeta);
+  const bool is_of_product =
+      recorded.empty() ? TextOf(reader->meta(), "product") == product.name : recorded == digest;
+  if (is_shared && !is_of_product) {
+    return Fail(ErrorCode::kInvalid, "this recording is of another product", id,
+                "open the product of the recording, then share it");
+  }
+  const std::lock_guard lock(mutex_);
+  auto shared = shared_;
+  if (is_shared) {
+    shared[id] = digest;
+  } else {
+    shared.erase(id);
+  }
+  auto written = WriteTexts(folder_ / kSharedFile, shared);
+  if (written) {
+    shared_ = std::move(shared);
+  }
+  return written;
 }
 
 }  // namespace hvas::studio

@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
+#include "product/product.h"
 #include "record/reader.h"
 #include "studio/json.h"
 
@@ -15,14 +17,24 @@ namespace hvas::studio {
 class RecordingShelf {
  public:
   /** @param folder  Made with the first recording; empty: recording is switched off. */
-  explicit RecordingShelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit RecordingShelf(std::filesystem::path folder);
 
   /** Makes the path of a new recording of a product, and its folder. Errors: kUnsupported when
    recording is switched off; kOutOfResource when the folder cannot be made. */
   [[nodiscard]] Result<std::filesystem::path> MakePath(const std::string& product) const;
 
-  /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped. */
-  [[nodiscard]] Json List();
+  /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped.
+   @param shared_of  Digest of a product: those of it alone that are shared; none: all. */
+  [[nodiscard]] Json List(const std::optional<std::string>& shared_of = std::nullopt);
+
+  /** Whether the owner has shared a recording of the product with this digest. Reads no file. */
+  [[nodiscard]] bool IsShared(const std::string& id, const std::string& digest) const;
+
+  /** Shares a recording with all who have a link while its product is open, or no more.
+   Errors: kNotFound; kInvalid where the recording is of another product; those of WriteAtomically.
+   */
+  [[nodiscard]] Result<void> Share(const std::string& id, const product::Product& product,
+                                   const std::string& digest, bool is_shared);
 
   /** Path of a recording. Errors: kNotFound. */
   [[nodiscard]] Result<std::filesystem::path> Find(const std::string& id) const;
@@ -53,6 +65,9 @@ class RecordingShelf {
   [[nodiscard]] std::map<std::string, std::string> ReadNames() const;
   [[nodiscard]] Result<void> WriteNames(const std::map<std::string, std::string>& names) const;
 
+  /** Whether a recording is on the list of those shared. @pre the mutex is locked. */
+  [[nodiscard]] bool HasShared(const std::string& id) const { return shared_.count(id) > 0; }
+
   /** Cached description of a file; valid while the file's time and size are these. */
   struct Entry {
     std::filesystem::file_time_type written;
@@ -61,8 +76,9 @@ class RecordingShelf {
   };
 
   std::filesystem::path folder_;
-  std::mutex mutex_;
-  std::map<std::string, Entry> entries_;  ///< Cache, by id.
+  mutable std::mutex mutex_;
+  std::map<std::string, Entry> entries_;       ///< Cache, by id.
+  std::map<std::string, std::string> shared_;  ///< Digest of the product, by id of those shared.
 };
 
 }  // namespace hvas::studio

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "studio/access.h"
 #include "studio/workbench.h"
 
 namespace hvas::studio {
@@ -26,13 +27,14 @@ struct Response {
  @param accepted  Value of Accept-Encoding. Errors: kNotFound. */
 [[nodiscard]] Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted);
 
-/** Serves a resource below /api/ to a client with a session (docs/protocol.md).
+/** Serves a resource below /api/ to a client with a session (docs/protocol.md). The owner gets all
+ recordings, all others those of the open product that are shared.
  @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
  meshes, and nothing else.
  @param accepted  Value of Accept-Encoding: scene and meshes go compressed to whoever takes gzip.
  Errors: kNotFound for unknown resources; those of reading a record. */
 [[nodiscard]] Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
-                                               bool is_shielded = false,
+                                               const Visitor& visitor, bool is_shielded = false,
                                                std::string_view accepted = {});
 
 /** Decodes the percent-encoding (%xx) of a URL's path; malformed sequences stay as they are. */
