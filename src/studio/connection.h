@@ -33,7 +33,7 @@ class Connection {
   Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> table)
       : slot_(std::make_unique<Slot>(std::move(socket), std::move(table))) {}
 
-  /** As of ConnectionTable. */
+  /** Takes a place of its visitor's (ConnectionTable::Enter). */
   [[nodiscard]] bool Enter(const Visitor& visitor) {
     return slot_->table->Enter(slot_->number, visitor);
   }

@@ -18,9 +18,9 @@ class ConnectionTable {
  public:
   // Choices: a browser opens six connections to a server, besides its WebSocket.
   static constexpr std::size_t kMostStrangers = 32;
-  static constexpr std::size_t kMostOfLink = 16;     ///< Of the users of one link.
-  static constexpr std::size_t kMostOfViewers = 48;  ///< Of all that came by the viewers' link.
-  static constexpr std::size_t kMostOfGuests = 96;   ///< Of all but strangers and the owner.
+  static constexpr std::size_t kMostOfLink = 16;     ///< Users of one link.
+  static constexpr std::size_t kMostOfViewers = 48;  ///< All that came by the viewers' link.
+  static constexpr std::size_t kMostOfGuests = 96;   ///< All but strangers and the owner.
   static constexpr std::size_t kMostOfOwner = 32;
 
   /** Adds a connection of a stranger; closes the oldest stranger of the address with the most of
@@ -44,7 +44,7 @@ class ConnectionTable {
     std::string address;
     std::function<void()> close;
     Group group{Group::kStranger};
-    std::uint32_t link{0};  ///< Of guests.
+    std::uint32_t link{0};  ///< Visitor::link() of a guest.
     bool is_idle{true};
   };
 

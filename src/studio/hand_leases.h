@@ -16,7 +16,7 @@ namespace hvas::studio {
  every hand at any time. For one thread. */
 class HandLeases {
  public:
-  /** For how long a lease waits for the browser that has lost it [ns]: 30 s are enough for a page
+  /** Time for which a lease waits for the browser that has lost it [ns]: 30 s are enough for a page
    to load again, or a network to come back. A choice. */
   static constexpr std::int64_t kWaitNs = 30'000'000'000;
 

@@ -25,7 +25,7 @@ class DeviceList {
   struct Entry {
     std::string address;
     std::string driver;
-    std::string name;  ///< For people; it has no address in it.
+    std::string name;  ///< Title for people, without an address.
     bool is_emulated{false};
     const device::Driver* probed{nullptr};  ///< Looks whether it is there; null: nobody does.
   };

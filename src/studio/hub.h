@@ -52,9 +52,9 @@ class Hub {
  public:
   // Pages that see one scene, which share the network and the time of one thread: choices.
   static constexpr std::size_t kMaxClients = 24;
-  static constexpr std::size_t kKeptForOwner = 4;        ///< Of these, nobody else has.
-  static constexpr std::size_t kMaxClientsOfLink = 4;    ///< Of the users of one link.
-  static constexpr std::size_t kMaxViewingClients = 12;  ///< Of all that came by the viewers' link.
+  static constexpr std::size_t kKeptForOwner = 4;      ///< Places among these that nobody else has.
+  static constexpr std::size_t kMaxClientsOfLink = 4;  ///< Users of one link.
+  static constexpr std::size_t kMaxViewingClients = 12;  ///< All that came by the viewers' link.
   /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second.
    */
   static constexpr std::size_t kMaxUnseen = 8;

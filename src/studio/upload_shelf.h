@@ -17,7 +17,7 @@ class UploadShelf {
  public:
   struct Upload {
     std::filesystem::path file;
-    std::string name;  ///< As its sender has called it.
+    std::string name;  ///< Name that its sender has given.
   };
 
   /** Makes the folder for a file that is about to come. @param link  Visitor::link().
@@ -44,7 +44,7 @@ class UploadShelf {
     Upload upload;
   };
 
-  std::map<std::string, Kept> kept_;                       ///< By id.
+  std::map<std::string, Kept> kept_;                       ///< Files that have come, by id.
   std::map<std::uint32_t, std::filesystem::path> coming_;  ///< Folder of the file, by link.
 };
 

@@ -21,7 +21,7 @@ namespace hvas::studio::testing {
 struct CommandExample {
   std::string name;
   std::string right;
-  Json message;                     ///< Without an id.
+  Json message;                     ///< Has no id.
   std::vector<std::string> fields;  ///< Names of the fields that can be given.
 };
 
