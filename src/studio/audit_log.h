@@ -42,7 +42,7 @@ class AuditLog {
   void NoteRefusal(std::uint32_t link, const Entry& entry, const std::string& why,
                    std::int64_t now_ns);
 
-  /** In place of a link: that of nobody, as browsers are counted from 1. */
+  /** Stands for the link of nobody: browsers are counted from 1. */
   static constexpr std::uint32_t kStranger = 0xFFFFFFFF;
 
   /** Waits until all is written; nothing is written after it. */
