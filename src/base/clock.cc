@@ -3,15 +3,15 @@
 namespace hvas {
 namespace {
 
-class MonotonicClock final : public Clock {
+class BootClock final : public Clock {
  public:
-  [[nodiscard]] std::int64_t NowNs() const noexcept override { return MonotonicNs(); }
+  [[nodiscard]] std::int64_t NowNs() const noexcept override { return BootTimeNs(); }
 };
 
 }  // namespace
 
 const Clock& SystemClock() noexcept {
-  static const MonotonicClock clock;
+  static const BootClock clock;
   return clock;
 }
 

@@ -297,17 +297,6 @@ Refusal SequenceWindow::Take(std::uint64_t sequence) noexcept {
   return Refusal::kLate;
 }
 
-bool IsPlausible(const Hello& hello) noexcept {
-  const auto& limits = hello.limits;
-  const bool are_amounts = std::all_of(limits.begin(), limits.end(), [](double limit) {
-    return std::isfinite(limit) && limit >= 0 && limit < 1e6;
-  });
-  const bool are_axes = (hello.force_axes == 0 || hello.force_axes == 3) &&
-                        (hello.torque_axes == 0 || hello.torque_axes == 3);
-  return are_amounts && are_axes && hello.button_count <= 32 && limits[1] <= limits[0] &&
-         limits[3] <= limits[2];
-}
-
 DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   const auto has = [&hello](HelloFlag flag) { return (hello.flags & flag) != 0; };
   DeviceInfo info;
@@ -326,7 +315,7 @@ DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   info.capabilities.button_count = hello.button_count;
   info.profile = FindProfile("network")->profile;
   for (std::size_t i = 0; i < hello.limits.size(); ++i) {
-    if (hello.limits[i] > 0) {
+    if (hello.limits[i] != 0) {
       double& figure = i < kEdges ? info.profile.*kLimits[i]
                                   : info.profile.workspace[static_cast<Eigen::Index>(i - kEdges)];
       figure = hello.limits[i];
