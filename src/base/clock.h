@@ -20,12 +20,6 @@ inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;  // A definition.
   return ReadClock(CLOCK_MONOTONIC);
 }
 
-/** Time since the machine started, with the time for which it was suspended, never set back [ns]:
- what happened before a suspension is as old as it is for the world. RT-safe. */
-[[nodiscard]] inline std::int64_t BootTimeNs() noexcept {
-  return ReadClock(CLOCK_BOOTTIME);
-}
-
 /** A clock that can be another one in tests and emulators. */
 class Clock {
  public:
@@ -38,7 +32,7 @@ class Clock {
   [[nodiscard]] virtual std::int64_t NowNs() const noexcept = 0;
 };
 
-/** The machine's own: BootTimeNs(). */
+/** The machine's own, which goes on while the machine is suspended. */
 [[nodiscard]] const Clock& SystemClock() noexcept;
 
 /** Time that stands still until somebody moves it on. */

@@ -14,9 +14,9 @@
 namespace hvas::device {
 namespace {
 
-constexpr int kMostButtons = 32;         // Bits of DeviceState::buttons.
-constexpr std::size_t kMostText = 256;   // [bytes] of a name; USB has 126 characters. A choice.
-constexpr std::size_t kShownText = 40;   // [bytes] of it in a message: a choice.
+constexpr int kMostButtons = 32;        // Bits of DeviceState::buttons.
+constexpr std::size_t kMostText = 256;  // [bytes] of a name; USB has 126 characters. A choice.
+constexpr std::size_t kShownText = 40;  // [bytes] of it in a message: a choice.
 
 /** The number of bytes of the character that begins a text, where it is UTF-8 (RFC 3629) and no
  control character; else 0. */
@@ -35,10 +35,9 @@ std::size_t MeasureCharacter(std::string_view text) {
       return 0;
     }
   }
-  const bool is_out_of_range = (first == 0xE0 && byte(1) < 0xA0) ||
-                               (first == 0xED && byte(1) > 0x9F) ||
-                               (first == 0xF0 && byte(1) < 0x90) ||
-                               (first == 0xF4 && byte(1) > 0x8F);
+  const bool is_out_of_range =
+      (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F) ||
+      (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) > 0x8F);
   const bool is_control = first == 0xC2 && byte(1) < 0xA0;
   return is_out_of_range || is_control ? 0 : size;
 }
@@ -76,9 +75,10 @@ std::string NameDevice(const DeviceInfo& info) {
 
 Result<void> CheckCapabilities(const Capabilities& can, const std::string& where) {
   const auto fail = [&where](const char* key, int value, const char* possible) {
-    return Fail(ErrorCode::kInvalid,
-                fmt::format("\"{}\" is {}, which is impossible: it must be {}", key, value, possible),
-                where, "correct the device's program, or update its driver");
+    return Fail(
+        ErrorCode::kInvalid,
+        fmt::format("\"{}\" is {}, which is impossible: it must be {}", key, value, possible),
+        where, "correct the device's program, or update its driver");
   };
   if (can.force_axes != 0 && can.force_axes != 3) {
     return fail("force_axes", can.force_axes, "0 or 3");

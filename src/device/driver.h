@@ -60,13 +60,14 @@ class Driver {
 
   [[nodiscard]] std::string_view address_help() const { return words_.address_help; }
 
-  /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go. What
-   CheckInfo() refuses is a problem. */
+  /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go.
+   What CheckInfo() refuses is a problem. */
   [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings, bool opens_devices) const;
 
   /** Opens a device.
    @param address  What follows the driver's name and a colon; empty: the first one found.
-   Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy; those of CheckInfo(). */
+   Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy; those of CheckInfo().
+ */
   [[nodiscard]] Result<std::unique_ptr<Device>> Open(const std::string& address,
                                                      const Surroundings& surroundings) const;
 
@@ -89,9 +90,9 @@ class Driver {
 };
 
 /** Checks what a device says of itself, whoever made its driver: all devices pass here, by
- Driver::Open and Driver::Probe. Figures are those of CheckProfile(), texts are UTF-8 without control
- characters, axes and buttons as Capabilities has them.
- Errors: kInvalid names the device, the field, its value and what is possible. */
+ Driver::Open and Driver::Probe. Figures are those of CheckProfile(), texts are UTF-8 without
+ control characters, axes and buttons as Capabilities has them. Errors: kInvalid names the device,
+ the field, its value and what is possible. */
 [[nodiscard]] Result<void> CheckInfo(const DeviceInfo& info);
 
 /** All drivers, in the order in which they are tried. */

@@ -65,8 +65,8 @@ Unexpected Invalid(const std::string& where, const std::string& key, const std::
 
 /** What is impossible about a figure, with its value and its range; nothing where it can be. */
 std::string DescribeImpossible(const Figure& figure, double value) {
-  const bool is_possible = (value >= figure.least && value <= figure.most) ||
-                           (figure.may_be_zero && value == 0);
+  const bool is_possible =
+      (value >= figure.least && value <= figure.most) || (figure.may_be_zero && value == 0);
   return is_possible ? ""
                      : fmt::format("is {}, which is impossible: it must be {}{} to {}", value,
                                    figure.may_be_zero ? "0, or " : "", figure.least, figure.most);

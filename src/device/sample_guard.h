@@ -43,9 +43,9 @@ class SampleGuard {
  then linearly down to nothing in 50 ms, so that no force outlives who computed it (N6). RT-safe. */
 [[nodiscard]] double ShareOfAge(std::int64_t age_ns) noexcept;
 
-/** What a device's own thread may still show of the wrench that it was given last. After that thread
- stood still it shows nothing of what was given before: the device has let go by then, and the force
- would be back at once. One thread; RT-safe. */
+/** What a device's own thread may still show of the wrench that it was given last. After that
+ thread stood still it shows nothing of what was given before: the device has let go by then, and
+ the force would be back at once. One thread; RT-safe. */
 class ForceHold {
  public:
   /** Share of a wrench, as the thread is about to show it.

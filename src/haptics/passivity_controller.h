@@ -142,8 +142,8 @@ class PassivityController {
   /** A device was opened, or a part taken anew: the account starts at zero. */
   void Reset() noexcept;
 
-  /** Nothing was written for so long that the device has let go (SafetyGate::IsStall): where the hand
-   went meanwhile is nobody's work, and no speed. To be called before Limit. */
+  /** Nothing was written for so long that the device has let go (SafetyGate::IsStall): where the
+   hand went meanwhile is nobody's work, and no speed. To be called before Limit. */
   void ForgetWritten() noexcept;
 
   [[nodiscard]] const PassivityChannel& force() const noexcept { return force_; }

@@ -68,7 +68,7 @@ enum GateAction : std::uint32_t {
 inline constexpr std::array kGateActions{
     kGateNotFinite, kGateMagnitude, kGateRate,       kGateThermal,  kGateSoftStart,
     kGateSpeed,     kGateLateModel, kGateLostClient, kGateNoDevice, kGateNotHeld,
-    kGateStopped,   kGateBuzz,      kGateKick,      kGateStalled};
+    kGateStopped,   kGateBuzz,      kGateKick,       kGateStalled};
 
 /** The reason in words, for one action. RT-safe. */
 [[nodiscard]] const char* ToString(GateAction action) noexcept;

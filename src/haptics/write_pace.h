@@ -7,8 +7,8 @@
 
 namespace hvas::haptics {
 
-/** Watches the time from one write to a device to the next, by the clock of the loop that writes: of
- a session's tick and of a trial alike. The gate starts anew after a gap, and what it let through
+/** Watches the time from one write to a device to the next, by the clock of the loop that writes:
+ of a session's tick and of a trial alike. The gate starts anew after a gap, and what it let through
  before one is not written after it: a thread can be kept waiting between the two. RT-safe. */
 class WritePace {
  public:

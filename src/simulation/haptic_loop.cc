@@ -16,8 +16,8 @@ bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
   // What the flight recorder is for.
   constexpr std::uint32_t kFaults = haptics::kGateNotFinite | haptics::kGateLateModel |
                                     haptics::kGateLostClient | haptics::kGateNoDevice |
-                                    haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick |
-                                    haptics::kGateStalled;
+                                    haptics::kGateStopped | haptics::kGateBuzz |
+                                    haptics::kGateKick | haptics::kGateStalled;
   const std::uint32_t begun = out.gate_actions & ~actions_before;
   return (begun & kFaults) != 0 ||
          (device.condition != before.condition && device::IsFault(device.condition));

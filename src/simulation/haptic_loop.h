@@ -45,6 +45,7 @@ class HapticLoop {
 
   [[nodiscard]] static OperatorInput MakeInput(Hand* hand, std::int64_t t_ns,
                                                std::int64_t period_ns) noexcept;
+
   /** Time of the clock by which writes are late: the machine's or a steered one; virtual time. */
   [[nodiscard]] std::int64_t NowNs() const noexcept {
     return execution_.is_live ? execution_.clock->NowNs() : t_ns_;

@@ -37,8 +37,8 @@ void FloorTrial::Tick() noexcept {
   if (haptics::SafetyGate::IsStall(since_write_ns)) {
     passivity_.ForgetWritten();
   }
-  const spatial::Wrench wanted = passivity_.Limit(
-      now.X_DH, CalcFloor(now), std::numeric_limits<double>::quiet_NaN(), 0, dt);
+  const spatial::Wrench wanted =
+      passivity_.Limit(now.X_DH, CalcFloor(now), std::numeric_limits<double>::quiet_NaN(), 0, dt);
   haptics::GateInput input = haptics::MakeGateInput(now, wanted, dt, &last_sample_ns_);
   input.since_write_ns = since_write_ns;
   state.F_H_D = pace_.Admit(gate_.Pass(input), clock_.NowNs());

@@ -1,4 +1,5 @@
-// The floor of `hvas devices --try` on emulated devices in virtual time, through their real drivers.
+// The floor of `hvas devices --try` on emulated devices in virtual time, through their real
+// drivers.
 #include "app/devices/floor_trial.h"
 
 #include <algorithm>
@@ -106,8 +107,7 @@ TEST_P(FloorTrialDriverTest, ForceStartsFromZeroAfterEveryGap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drivers, FloorTrialDriverTest,
-                         ::testing::Values("openhaptics", "virtuose", "haply", "network",
-                                           "plugin"),
+                         ::testing::Values("openhaptics", "virtuose", "haply", "network", "plugin"),
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace

@@ -72,9 +72,8 @@ class NotedProcess {
     const std::size_t before = ReadNotes().size();
     ::kill(process_, SIGCONT);
     constexpr std::size_t kMore = 100;
-    return WaitUntil([before](const std::vector<Note>& notes) {
-      return notes.size() >= before + kMore;
-    });
+    return WaitUntil(
+        [before](const std::vector<Note>& notes) { return notes.size() >= before + kMore; });
   }
 
  private:
@@ -95,8 +94,8 @@ class NotedProcess {
   pid_t process_{-1};
 };
 
-/** Expects that after each gap in the writes the force grows from zero, by what a soft start allows in
- the time that a late write may count for: 50 N/s, 2 ms. */
+/** Expects that after each gap in the writes the force grows from zero, by what a soft start allows
+ in the time that a late write may count for: 50 N/s, 2 ms. */
 std::size_t ExpectSoftStarts(const std::vector<Note>& notes) {
   constexpr double kGap = 0.025;  // [s]: somewhat more than what is no gap yet.
   constexpr double kMostStep = 50 * 2e-3;
@@ -108,8 +107,8 @@ std::size_t ExpectSoftStarts(const std::vector<Note>& notes) {
     ++gaps;
     double before = 0;
     for (std::size_t k = i; k < notes.size() && k < i + 50; ++k) {
-      EXPECT_LE(notes[k].force, before + kMostStep + 1e-9) << "write " << k - i << " after a gap of "
-                                                          << notes[i].t_s - notes[i - 1].t_s << " s";
+      EXPECT_LE(notes[k].force, before + kMostStep + 1e-9)
+          << "write " << k - i << " after a gap of " << notes[i].t_s - notes[i - 1].t_s << " s";
       before = notes[k].force;
     }
   }
@@ -131,15 +130,15 @@ TEST_P(ProcessStallReleaseTest, DeviceIsGivenNoForceOfBefore) {
   EXPECT_GE(ExpectSoftStarts(process.ReadNotes()), stalls);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Programs, ProcessStallReleaseTest,
-    ::testing::Values(
-        std::pair<const char*, std::vector<std::string>>{
-            "Trial", {"devices", "--try", "DEVICE", "--seconds", "600"}},
-        std::pair<const char*, std::vector<std::string>>{
-            "Session",
-            {"assemble", ProductFile("gear_pump"), "-q", "--device", "DEVICE", "--realtime", "--limit", "600"}}),
-    [](const auto& instance) { return instance.param.first; });
+INSTANTIATE_TEST_SUITE_P(Programs, ProcessStallReleaseTest,
+                         ::testing::Values(
+                             std::pair<const char*, std::vector<std::string>>{
+                                 "Trial", {"devices", "--try", "DEVICE", "--seconds", "600"}},
+                             std::pair<const char*, std::vector<std::string>>{
+                                 "Session",
+                                 {"assemble", ProductFile("gear_pump"), "-q", "--device", "DEVICE",
+                                  "--realtime", "--limit", "600"}}),
+                         [](const auto& instance) { return instance.param.first; });
 
 }  // namespace
 }  // namespace hvas::app

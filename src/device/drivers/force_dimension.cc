@@ -350,7 +350,7 @@ class DhdDriver final : public Driver {
 };
 
 Result<std::unique_ptr<Device>> DhdDriver::OpenUnchecked(const std::string& address,
-                                                const Surroundings& surroundings) const {
+                                                         const Surroundings& surroundings) const {
   int number = -1;
   if (!address.empty()) {
     const auto [end, error] =

@@ -342,7 +342,7 @@ class VirtDriver final : public Driver {
 };
 
 Result<std::unique_ptr<Device>> VirtDriver::OpenUnchecked(const std::string& address,
-                                                 const Surroundings& surroundings) const {
+                                                          const Surroundings& surroundings) const {
   std::vector<Finding> looked_for;
   const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &looked_for);
   if (!library) {

@@ -83,6 +83,7 @@ class EmulatedDevice final : public EmulatedPort {
   /** @param claim  What it says of itself. */
   EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH,
                  const DeviceProfile& claim);
+
   explicit EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH = {})
       : EmulatedDevice(profile, X_DH, profile) {}
 

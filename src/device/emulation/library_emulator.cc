@@ -94,7 +94,9 @@ class LibraryEmulator final : public Emulator {
  public:
   LibraryEmulator(const Kind& kind, const StubEntry& stub, const EmulatorOptions& options,
                   const LibraryManners& manners)
-      : kind_(kind), stub_(stub), device_(options.profile, options.X_DH, options.claim.value_or(options.profile)) {
+      : kind_(kind),
+        stub_(stub),
+        device_(options.profile, options.X_DH, options.claim.value_or(options.profile)) {
     const SourcedProfile* known = FindProfile(options.profile.id);
     const bool has_model =
         known != nullptr && known->driver == kind.driver && !known->models.empty();

@@ -164,9 +164,10 @@ TEST(DeviceClaimsTest, ImpossibleAxesAndButtonsAreRefusedByName) {
 
 // A name ends in JSON, in a record and at a terminal.
 TEST(DeviceClaimsTest, TextsThatAreNoTextAreRefused) {
-  const std::vector<std::string> bad{"\x1b[2J", "a\nb", std::string("a\0b", 3), "\xff\xfe", "\xc3",
-                                     "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xc2\x9b",
-                                     "\x7f", std::string(300, 'x')};
+  const std::vector<std::string> bad{
+      "\x1b[2J",  "a\nb",     std::string("a\0b", 3), "\xff\xfe",
+      "\xc3",     "\xc0\xaf", "\xed\xa0\x80",         "\xf4\x90\x80\x80",
+      "\xc2\x9b", "\x7f",     std::string(300, 'x')};
   using Text = std::string& (*)(DeviceInfo*);
   const std::vector<std::pair<const char*, Text>> texts{
       {"model", [](DeviceInfo* info) -> std::string& { return info->model; }},

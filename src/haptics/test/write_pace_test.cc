@@ -168,8 +168,8 @@ TEST(SafetyGate, LatchOutlivesAStall) {
   EXPECT_TRUE(gate.is_latched());
 }
 
-// The hand goes 0.3 m while nothing holds it: that is no work of the force that was written last, in
-// neither direction, and no speed.
+// The hand goes 0.3 m while nothing holds it: that is no work of the force that was written last,
+// in neither direction, and no speed.
 TEST(PassivityController, MotionDuringAStallIsNobodysWork) {
   const device::DeviceProfile profile;
   for (const double away : {0.3, -0.3}) {

@@ -165,10 +165,11 @@ void ExpectSoftStart(StalledSession* session) {
   for (int i = 0; i * session->period_s() < 0.1; ++i) {
     session->Tick();
     const haptics::SafetyLimits& limits = session->limits();
-    ASSERT_LE(session->written() - before,
-              limits.engage_force_rate * session->period_s() + 1e-9) << i;
+    ASSERT_LE(session->written() - before, limits.engage_force_rate * session->period_s() + 1e-9)
+        << i;
     ASSERT_LE(session->turning() - turning_before,
-              limits.engage_torque_rate * session->period_s() + 1e-9) << i;
+              limits.engage_torque_rate * session->period_s() + 1e-9)
+        << i;
     before = session->written();
     turning_before = session->turning();
   }
