@@ -327,9 +327,14 @@ DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   if (hello.torque_axes == 0) {
     info.profile.max_torque = info.profile.continuous_torque = 0;
   }
-  info.profile.continuous_force = std::min(info.profile.continuous_force, info.profile.max_force);
-  info.profile.continuous_torque =
-      std::min(info.profile.continuous_torque, info.profile.max_torque);
+  // HVAS's own continuous limits stand in for those that the device does not know.
+  if (hello.limits[1] == 0) {
+    info.profile.continuous_force = std::min(info.profile.continuous_force, info.profile.max_force);
+  }
+  if (hello.limits[3] == 0) {
+    info.profile.continuous_torque =
+        std::min(info.profile.continuous_torque, info.profile.max_torque);
+  }
   info.profile_note = "limits, workspace, resolution, rate and delay are as reported by the device";
   return info;
 }

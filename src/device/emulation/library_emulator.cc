@@ -40,13 +40,18 @@ int SystemTypeOf(std::string_view model) {
   return found != kTypes.end() ? found->second : 0;
 }
 
-StubTraits TraitsOf(const char* model, const LibraryManners& manners) {
+StubTraits TraitsOf(const char* model, const LibraryManners& manners,
+                    const std::optional<DeviceProfile>& claim) {
   const std::string_view name(model);
   StubTraits traits;
   traits.model = model;
   traits.system_type = SystemTypeOf(name);
   traits.has_active_wrist = name == "sigma.7" || name == "lambda.7";
   traits.has_gripper = traits.has_active_wrist || name == "omega.7";
+  if (claim) {
+    traits.max_force = claim->max_force;
+    traits.max_torque = claim->max_torque;
+  }
   traits.is_licensed = manners.is_licensed;
   traits.is_calibrated = manners.is_calibrated;
   traits.can_calibrate = manners.can_calibrate;
@@ -102,7 +107,7 @@ class LibraryEmulator final : public Emulator {
         known != nullptr && known->driver == kind.driver && !known->models.empty();
     model_ = has_model ? known->models.front() : kind.model;
     EmulatedPort* const port = options.is_live ? static_cast<EmulatedPort*>(&live_) : &device_;
-    number_ = stub_.attach(port, TraitsOf(model_.c_str(), manners));
+    number_ = stub_.attach(port, TraitsOf(model_.c_str(), manners, options.claim));
     surroundings_.library_folders = {StubFolder()};
     surroundings_.root = StubFolder() / "no-machine";
     surroundings_.clock = options.is_live ? &SystemClock() : &clock_;

@@ -17,8 +17,8 @@
 namespace hvas::device {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 /** A figure of a profile by its key. */
 struct Claim {
@@ -67,7 +67,7 @@ const std::vector<Claim>& Claims() {
  for. */
 constexpr std::size_t kToldClaims = 15;
 
-constexpr std::array kAbsurd{kNan, kInf, -kInf, -1.0, -1e300, 1e300, 1e9, 1e-300};
+constexpr std::array kAbsurd{kNoNumber, kEndless, -kEndless, -1.0, -1e300, 1e300, 1e9, 1e-300};
 
 /** A device that says of itself what the test wants. */
 class ClaimingDevice final : public Device {
@@ -151,9 +151,9 @@ TEST(DeviceClaimsTest, ImpossibleAxesAndButtonsAreRefusedByName) {
     CredulousDriver driver;
     driver.info.capabilities.force_axes = value;
     ExpectRefused(driver, "force_axes", std::to_string(value));
-    driver = {};
-    driver.info.capabilities.torque_axes = value;
-    ExpectRefused(driver, "torque_axes", std::to_string(value));
+    CredulousDriver other;
+    other.info.capabilities.torque_axes = value;
+    ExpectRefused(other, "torque_axes", std::to_string(value));
   }
   for (const int value : {-1, 33, std::numeric_limits<int>::min()}) {
     CredulousDriver driver;
@@ -194,9 +194,9 @@ TEST(DeviceClaimsTest, ContinuousLimitAboveItsPeakIsRefused) {
   CredulousDriver driver;
   driver.info.profile.continuous_force = 2 * driver.info.profile.max_force;
   EXPECT_NE(driver.Open("", {}).error().message.find("above its peak"), std::string::npos);
-  driver = {};
-  driver.info.profile.continuous_torque = 2 * driver.info.profile.max_torque;
-  EXPECT_NE(driver.Open("", {}).error().message.find("above its peak"), std::string::npos);
+  CredulousDriver other;
+  other.info.profile.continuous_torque = 2 * other.info.profile.max_torque;
+  EXPECT_NE(other.Open("", {}).error().message.find("above its peak"), std::string::npos);
 }
 
 TEST(DeviceClaimsTest, EveryKnownDeviceIsPossible) {
@@ -240,7 +240,7 @@ TEST_P(DriverClaimsTest, NothingImpossibleComesIn) {
   std::size_t refused = 0;
   for (std::size_t i = 0; i < kToldClaims; ++i) {
     const Claim& claim = Claims()[i];
-    for (const double value : {kNan, -1.0, 1e300}) {
+    for (const double value : {kNoNumber, -1.0, 1e300}) {
       SCOPED_TRACE(claim.key + fmt::format(" {}", value));
       const bool is_refused = IsRefused(GetParam(), claim, value);
       refused += is_refused ? 1 : 0;

@@ -113,7 +113,8 @@ TEST(SafetyGate, AfterAStallTheForceStartsFromZeroAndSoftly) {
           const double time = is_first && says_gap ? 2e-3 : period;
           ASSERT_LE(out.f.norm() - last.f.norm(), limits.engage_force_rate * time + 1e-12) << i;
           ASSERT_LE(out.t.norm() - last.t.norm(), limits.engage_torque_rate * time + 1e-12) << i;
-          ASSERT_LE(out.f.norm(), limits.max_force * (i * period + 2e-3) / limits.soft_start_time);
+          ASSERT_LE(out.f.norm(),
+                    limits.max_force * (i * period + 2e-3) / limits.soft_start_time + 1e-9);
           last = out;
         }
         EXPECT_EQ(last.f, push) << "it is back after the soft start";
