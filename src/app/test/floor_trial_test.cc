@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -31,11 +32,24 @@ class PressedTrial {
     EXPECT_TRUE(device) << device.error().ToString();
     device_ = std::move(*device);
     trial_ = std::make_unique<FloorTrial>(device_.get(), rate_hz, *emulator_->surroundings().clock);
-    device::HandIntent hand;
-    constexpr double kPress = 0.03;  // [m] below the floor that the hand wants to be.
-    const Quat& q_UD = device_->info().profile.q_UD;
-    hand.X_DR = spatial::Pose(Vec3(q_UD.conjugate() * Vec3(0, 0, -kPress)));
-    emulator_->device().SetHand(hand);
+  }
+
+  /** Lifts the hand off the floor with an open grip, and presses it down: a floor that has let go
+   of the hand owes it nothing. */
+  void Press() {
+    constexpr double kReach = 0.02;   // [m] of the hand's way, either way.
+    constexpr double kLower = -0.01;  // [m]: the middle of it.
+    const Quat q_DU = device_->info().profile.q_UD.conjugate();
+    for (double t = 0; t < 2; t += period_s()) {
+      device::HandIntent hand;
+      // Up in a second, down in the next.
+      const double phase = std::numbers::pi * t;
+      hand.X_DR = spatial::Pose(Vec3(q_DU * Vec3(0, 0, kLower - kReach * std::cos(phase))));
+      hand.V_DR.v = q_DU * Vec3(0, 0, kReach * std::numbers::pi * std::sin(phase));
+      hand.buttons = t < 1 ? 0 : 1;
+      emulator_->device().SetHand(hand);
+      (void)Tick();
+    }
   }
 
   /** One tick on time. @returns the force that the device was given [N]. */
@@ -73,7 +87,7 @@ void ExpectSoftStarts(PressedTrial* trial, std::initializer_list<double> gaps) {
   constexpr double kFirst = kRate * 2e-3;  // [N]: what a late write counts for.
   for (const double gap : gaps) {
     SCOPED_TRACE(gap);
-    trial->Run(1.5);
+    trial->Press();
     ASSERT_GT(trial->force(), kLeast) << "it presses";
     trial->StandStill(gap);
     double before = trial->Tick();

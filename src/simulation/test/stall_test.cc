@@ -19,7 +19,7 @@ namespace {
 
 using testing::DirectDevice;
 using testing::DirectEmulator;
-using testing::PegInBlockModel;
+using testing::PressedPegModel;
 using testing::Watch;
 
 /** The machine's clock as the test has it: it can leap between two readings. */
@@ -138,7 +138,7 @@ class StalledSession {
     execution_.advance();
   }
 
-  std::shared_ptr<const Model> model_{PegInBlockModel()};
+  std::shared_ptr<const Model> model_{PressedPegModel()};
   DirectEmulator emulator_;
   DirectDevice device_;
   haptics::TickOptions options_;
@@ -216,7 +216,7 @@ TEST_P(StallTest, EveryTickRunsAgainBitForBit) {
   ASSERT_TRUE(session.RunUntilPressed(kPressed));
   session.clock().Advance(300'000'000);
   ASSERT_TRUE(session.RunUntilPressed(kPressed));
-  Simulation again(PegInBlockModel(), session.options());
+  Simulation again(PressedPegModel(), session.options());
   const TickLog& log = session.log();
   for (std::size_t i = 0; i < log.tick_count(); ++i) {
     ASSERT_EQ(again.haptics().ReplayTick(log, i).F_H_D.f, log.tick(i).F_H_D.f) << i;
