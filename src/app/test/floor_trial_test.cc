@@ -103,7 +103,7 @@ void ExpectSoftStarts(PressedTrial* trial, std::initializer_list<double> gaps) {
 class FloorTrialRateTest : public ::testing::TestWithParam<double> {};
 
 TEST_P(FloorTrialRateTest, ForceStartsFromZeroAfterEveryGap) {  // N6
-  PressedTrial trial("forcedimension", GetParam());
+  PressedTrial trial("plugin", GetParam());
   ExpectSoftStarts(&trial, {0.021, 0.05, 0.2, 1.0, 5.0});
 }
 
@@ -121,7 +121,8 @@ TEST_P(FloorTrialDriverTest, ForceStartsFromZeroAfterEveryGap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drivers, FloorTrialDriverTest,
-                         ::testing::Values("openhaptics", "virtuose", "haply", "network", "plugin"),
+                         ::testing::Values("openhaptics", "forcedimension", "virtuose", "haply",
+                                           "network", "plugin"),
                          [](const auto& instance) { return instance.param; });
 
 }  // namespace
