@@ -1,22 +1,18 @@
 /* A device whose handle stands still below its floor, and that notes each write with its time in
-   the file that is its argument: pairs of doubles, [s] and [N]. Its button is pressed after half a
-   second of samples, as by somebody who takes a part. */
+   the file that is its argument: pairs of doubles, [s] and [N]. */
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "hvas_device_plugin.h"
 
 static const double kDepth = 0.03; /* [m] */
-static const uint32_t kOpenReads = 500;
 
 struct Handle {
   int file;
-  uint32_t reads;
 };
 
 static void* Open(const char* argument, char* error, uint32_t error_size) {
@@ -50,10 +46,8 @@ static void Describe(void* device, struct HvasDeviceDescription* description) {
 }
 
 static int32_t Read(void* device, struct HvasDeviceSample* sample) {
-  struct Handle* handle = device;
-  ++handle->reads;
+  (void)device;
   sample->position[2] = -kDepth;
-  sample->buttons = handle->reads > kOpenReads ? 1 : 0;
   return HVAS_DEVICE_READY;
 }
 

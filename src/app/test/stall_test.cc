@@ -19,7 +19,6 @@ namespace hvas::app {
 namespace {
 
 using hvas::testing::TemporaryFolder;
-using testing::ProductFile;
 using testing::ReadText;
 using testing::StartHvas;
 
@@ -115,12 +114,9 @@ std::size_t ExpectSoftStarts(const std::vector<Note>& notes) {
   return gaps;
 }
 
-class ProcessStallReleaseTest
-    : public ::testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
-
-TEST_P(ProcessStallReleaseTest, DeviceIsGivenNoForceOfBefore) {
+TEST(ProcessStallReleaseTest, DeviceIsGivenNoForceOfBefore) {
   constexpr double kLeast = 1;  // [N] that acts when it stands still.
-  const NotedProcess process(GetParam().second);
+  const NotedProcess process({"devices", "--try", "DEVICE", "--seconds", "600"});
   std::size_t stalls = 0;
   for (const int gap_ms : {50, 100, 300, 1000, 5000}) {
     ASSERT_TRUE(process.WaitForForce(kLeast)) << gap_ms;
@@ -129,16 +125,6 @@ TEST_P(ProcessStallReleaseTest, DeviceIsGivenNoForceOfBefore) {
   }
   EXPECT_GE(ExpectSoftStarts(process.ReadNotes()), stalls);
 }
-
-INSTANTIATE_TEST_SUITE_P(Programs, ProcessStallReleaseTest,
-                         ::testing::Values(
-                             std::pair<const char*, std::vector<std::string>>{
-                                 "Trial", {"devices", "--try", "DEVICE", "--seconds", "600"}},
-                             std::pair<const char*, std::vector<std::string>>{
-                                 "Session",
-                                 {"assemble", ProductFile("gear_pump"), "-q", "--device", "DEVICE",
-                                  "--realtime", "--limit", "600"}}),
-                         [](const auto& instance) { return instance.param.first; });
 
 }  // namespace
 }  // namespace hvas::app
