@@ -1,6 +1,7 @@
 #include "fits/population.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -263,6 +264,39 @@ void ExpectSame(const Counted& a, const Counted& b) {
 }
 
 // Depths between the stations and several lands; and depths at the stations of one.
+// The generator as published: https://prng.di.unimi.it/xoshiro128plusplus.c, seeded by SplitMix64.
+TEST(Population, BitsAreThoseOfThePublishedGenerator) {
+  constexpr std::uint64_t kSeed = 0x0123456789abcdefULL;
+  constexpr std::int32_t kCount = 100 * kLanes;
+  std::uint64_t state = kSeed;
+  const auto split_mix = [&state] {
+    std::uint64_t z = state += 0x9e3779b97f4a7c15ULL;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
+  };
+  std::array<std::array<std::uint32_t, 4>, kLanes> lanes{};
+  for (std::size_t word = 0; word < 4; ++word) {
+    for (auto& lane : lanes) {
+      lane[word] = split_mix();
+    }
+  }
+  std::vector<std::uint32_t> bits(kCount);
+  DrawBitsScalar(kSeed, kCount, bits.data());
+  const auto rotate = [](std::uint32_t x, int k) { return (x << k) | (x >> (32 - k)); };
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    std::array<std::uint32_t, 4>& s = lanes[i % kLanes];
+    ASSERT_EQ(bits[i], rotate(s[0] + s[3], 7) + s[0]) << i;
+    const std::uint32_t t = s[1] << 9;
+    s[2] ^= s[0];
+    s[3] ^= s[1];
+    s[1] ^= s[2];
+    s[0] ^= s[3];
+    s[2] ^= t;
+    s[3] = rotate(s[3], 11);
+  }
+}
+
 TEST(Population, BothKernelsGiveTheSameBits) {
   if (!__builtin_cpu_supports("avx2")) {
     return;  // Nothing to compare on this machine.
