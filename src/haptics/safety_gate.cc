@@ -65,7 +65,12 @@ GateInput MakeGateInput(const device::DeviceState& state, const spatial::Wrench&
 }
 
 SafetyLimits MakeSafetyLimits(const device::DeviceProfile& profile) noexcept {
-  const auto known = [](double limit) { return limit > 0 ? limit : SafetyLimits::kNever; };
+  const auto known = [](double limit) {
+    if (limit > 0) {
+      return limit;
+    }
+    return SafetyLimits::kNever;
+  };
   SafetyLimits limits;
   limits.max_force = profile.max_force;
   limits.max_torque = profile.max_torque;

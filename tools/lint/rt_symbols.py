@@ -45,6 +45,7 @@ ROOTS = [
     r"hvas::device::\(anonymous namespace\)::(Hd|Dhd|Virt)Device::(ReadVendor|WriteVendor|Tick)\(.*",
     r"hvas::device::SampleGuard::\w+\(.*",
     r"hvas::simulation::FlightRecorder::(Keep|Trigger)\(.*",
+    r"hvas::\(anonymous namespace\)::MachineLoopClock::NowNs\(.*",  # virtual: the clock of a live loop
     r"hvas::simulation::PartRun::OnTick\(.*",  # virtual: the sink of every run
     r"hvas::session::SessionRecorder::OnTick\(.*",  # virtual: the sink that records
     r"hvas::study::TrialWatch::OnTick\(.*",  # virtual: the account of a trial
