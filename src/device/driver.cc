@@ -109,7 +109,7 @@ Result<void> CheckInfo(const DeviceInfo& info) {
     }
   }
   if (const auto checked = CheckCapabilities(info.capabilities, where); !checked) {
-    return checked;
+    return Unexpected(checked.error());
   }
   return CheckProfile(info.profile, where);
 }
