@@ -272,7 +272,8 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
                 "ask for the lease first");
   }
   if (command.action == LeaseAction::kRelease) {
-    GiveLease(given, "");
+    leases_.Release(given);
+    BroadcastRoles();
     return Json::object();
   }
   const std::string to = command.to.value_or("");
@@ -280,7 +281,8 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
   if (found == clients_.end() || found->second.visitor.role != Role::kOperator) {
     return Fail(ErrorCode::kNotFound, "there is no such operator", to, "");
   }
-  GiveLease(given, to);
+  leases_.Give(given, to, found->second.visitor);
+  BroadcastRoles();
   return Json::object();
 }
 

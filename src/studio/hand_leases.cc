@@ -30,7 +30,7 @@ void HandLeases::Return(const std::string& client, const Visitor& visitor, bool 
   for (Lease& lease : leases_) {
     const bool is_its_own = lease.awaited != 0 && lease.awaited == visitor.browser;
     if (lease.client.empty() && (is_its_own || (takes_free && lease.awaited == 0))) {
-      lease = {client};
+      lease = {client, visitor.is_owner};
     }
   }
 }
@@ -38,14 +38,21 @@ void HandLeases::Return(const std::string& client, const Visitor& visitor, bool 
 void HandLeases::Lose(const std::string& client, const Visitor& visitor, std::int64_t now_ns) {
   for (Lease& lease : leases_) {
     if (lease.client == client) {
-      lease = {"", visitor.browser, now_ns + kWaitNs};
+      lease = {"", false, visitor.browser, now_ns + kWaitNs};
     }
   }
 }
 
-void HandLeases::Give(const std::vector<std::size_t>& hands, const std::string& client) {
+void HandLeases::Give(const std::vector<std::size_t>& hands, const std::string& client,
+                      const Visitor& visitor) {
   for (const std::size_t hand : hands) {
-    leases_[hand] = {client};
+    leases_[hand] = {client, visitor.is_owner};
+  }
+}
+
+void HandLeases::Release(const std::vector<std::size_t>& hands) {
+  for (const std::size_t hand : hands) {
+    leases_[hand] = {};
   }
 }
 
@@ -67,8 +74,9 @@ HandLeases::Obstacle HandLeases::Request(const std::vector<std::size_t>& hands,
   Obstacle obstacle;
   for (const std::size_t hand : hands) {
     Lease& lease = leases_[hand];
-    if (visitor.is_owner || lease.IsFreeFor(visitor.browser)) {
-      lease = {client};
+    const bool takes_back = visitor.is_owner && !lease.is_owners;
+    if (takes_back || lease.IsFreeFor(visitor.browser)) {
+      lease = {client, visitor.is_owner};
     } else if (lease.client.empty()) {
       obstacle.wait_ns = std::max(obstacle.wait_ns, lease.awaited_ns - now_ns);
     } else if (lease.client != client) {

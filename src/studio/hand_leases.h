@@ -38,8 +38,12 @@ class HandLeases {
   /** Takes the hands of a client that has gone; they wait for its browser. */
   void Lose(const std::string& client, const Visitor& visitor, std::int64_t now_ns);
 
-  /** Gives hands to a client; empty: to nobody, and for nobody do they wait. */
-  void Give(const std::vector<std::size_t>& hands, const std::string& client);
+  /** Gives hands to a client. */
+  void Give(const std::vector<std::size_t>& hands, const std::string& client,
+            const Visitor& visitor);
+
+  /** Takes hands from their clients; they wait for nobody. */
+  void Release(const std::vector<std::size_t>& hands);
 
   /** Ends the wait for browsers that have not come back in time. @returns whether one has ended. */
   bool EndWaits(std::int64_t now_ns);
@@ -51,13 +55,15 @@ class HandLeases {
         0};  ///< Time until a hand is free that waits for another browser; 0: none.
   };
 
-  /** Gives those hands to a client that nobody else may claim: to the owner all of them. */
+  /** Gives those hands to a client that nobody else may claim: to the owner all of them, but for
+   those of another page of the owner's, which asks. */
   Obstacle Request(const std::vector<std::size_t>& hands, const std::string& client,
                    const Visitor& visitor, std::int64_t now_ns);
 
  private:
   struct Lease {
     std::string client;
+    bool is_owners{false};       ///< The client is a page of the owner's.
     std::uint32_t awaited{0};    ///< Visitor::browser for which it waits; 0: for none.
     std::int64_t awaited_ns{0};  ///< Time at which the wait ends.
 

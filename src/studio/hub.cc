@@ -71,7 +71,7 @@ Result<std::string> Hub::Join(const Visitor& visitor, ClientLink* link, std::int
   if (visitor.role == Role::kOperator) {
     leases_.Return(id, visitor, /*takes_free=*/desk_ == nullptr, now_ns);
   } else if (visitor.role == Role::kParticipant) {
-    leases_.Give({0}, id);
+    leases_.Give({0}, id, visitor);
   }
   link->SendText(MakeHello(id, client).dump());
   for (const Json& event : workbench_->MakeCatchUpEvents()) {
@@ -213,11 +213,6 @@ Json Hub::MakeHands() const {
     hands[i]["lease"] = leases_.holder(i).empty() ? Json(nullptr) : Json(leases_.holder(i));
   }
   return hands;
-}
-
-void Hub::GiveLease(const std::vector<std::size_t>& hands, const std::string& id) {
-  leases_.Give(hands, id);
-  BroadcastRoles();
 }
 
 void Hub::CloseRevoked() {

@@ -195,8 +195,6 @@ class Hub {
 
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
-  /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */
-  void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;

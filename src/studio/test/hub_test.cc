@@ -294,6 +294,17 @@ TEST_F(HubTest, OwnerTakesEveryHandBackAtOnce) {
   EXPECT_EQ(Ask(b, &guest, request)["result"]["waits_for"], back) << "a guest has to ask";
 }
 
+TEST_F(HubTest, PagesOfTheOwnerAskEachOther) {
+  const Visitor owner{Role::kOperator, true, 1};
+  FakeLink first;
+  FakeLink second;
+  const std::string a = JoinAs(owner, &first);
+  const std::string b = JoinAs(owner, &second);
+  const Json reply = Ask(b, &second, {{"command", "lease"}, {"action", "request"}});
+  EXPECT_EQ(reply["result"]["waits_for"], a);
+  EXPECT_EQ(first.Last("lease_asked")["by"], b);
+}
+
 TEST_F(HubTest, RecordingsAreTheOwnersWhoeverHasTheLease) {
   FakeLink guest;
   const std::string b = Join(Role::kOperator, &guest);

@@ -48,6 +48,10 @@ async function copy(text: string): Promise<void> {
 function useInvitation(guest: Signal<Guest>): { link: Invitation | null; isDone: boolean; again: () => void } {
   const made = useSignal<ReadonlyMap<Role, Invitation | null>>(new Map());
   const make = async (role: Role) => {
+    const shown = studio.recordings.playback.peek();
+    if (shown !== null && store.isOwner.peek()) {
+      await studio.recordings.share(shown.run.detail.id, true);  // the link leads to it
+    }
     const link = await invite(role);
     made.value = new Map(made.peek()).set(role, link);
   };
