@@ -53,14 +53,15 @@ std::string HideFolders(std::string_view text) {
   constexpr std::string_view kAfterPath = " \t\n\"'`);,>]";     // What ends one, in sentences.
   std::string shown;
   for (std::size_t i = 0; i < text.size();) {
-    const bool begins = text[i] == '/' && (i == 0 || kBeforePath.find(text[i - 1]) != text.npos);
+    const bool begins = text[i] == '/' && (i == 0 || kBeforePath.find(text[i - 1]) != text.npos) &&
+                        i + 1 < text.size() && kAfterPath.find(text[i + 1]) == text.npos;
     if (!begins) {
       shown += text[i++];
       continue;
     }
     const std::size_t end = std::min(text.find_first_of(kAfterPath, i), text.size());
     const std::string_view path = text.substr(i, end - i);
-    shown += path.substr(path.find_last_of('/', path.size() > 1 ? path.size() - 2 : 0) + 1);
+    shown += path.substr(path.find_last_of('/', path.size() - 2) + 1);
     i = end;
   }
   return shown;
