@@ -6,6 +6,7 @@
 
 #include <string_view>
 
+#include "app/command_watch.h"
 #include "device/force_withdrawal.h"
 
 namespace hvas::app {
@@ -21,7 +22,8 @@ sigset_t EndSignals() {
 
 }  // namespace
 
-EndWatch::EndWatch(std::chrono::milliseconds patience) {
+EndWatch::EndWatch(std::chrono::milliseconds patience)
+    : out_of_time_(CommandWatch::Get().stop(), [this] { stop_.request_stop(); }) {
   const sigset_t signals = EndSignals();
   ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
   thread_ = std::thread([this, patience] { Watch(patience); });

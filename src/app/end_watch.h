@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -28,16 +29,18 @@ class EndWatch {
   /** Waits until the user or the system ends the program. */
   void Wait();
 
-  /** Asks for a stop when the user or the system ends the program. */
+  /** Asks for a stop when the user or the system ends the program, or CommandWatch the command. */
   [[nodiscard]] std::stop_token stop() const { return stop_.get_token(); }
 
  private:
   void Watch(std::chrono::milliseconds patience);
 
+  std::stop_source stop_;
+  /** Asks for a stop when the command's time is over (CommandWatch). */
+  std::stop_callback<std::function<void()>> out_of_time_;
   sigset_t before_{};  ///< Signals that were not for this thread before.
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::stop_source stop_;
   bool is_told_{false};  ///< It was told to end.
   bool is_over_{false};
   std::thread thread_;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/command_line.h"
+#include "app/command_watch.h"
 #include "base/crash_note.h"
 #include "device/force_withdrawal.h"
 
@@ -40,7 +41,8 @@ int main(int argc, char** argv) {
   hvas::device::WithdrawForcesAtTheEnd();
   try {
     hvas::NoteWork(JoinArguments(argc, argv));
-    return FlushOutput(hvas::app::RunCommandLine(argc, argv));
+    hvas::app::CommandWatch& watch = hvas::app::CommandWatch::Get();
+    return watch.Conclude(FlushOutput(hvas::app::RunCommandLine(argc, argv)));
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "hvas: %s\n", exception.what());  // Of memory, as a rule.
     return 1;

@@ -483,7 +483,7 @@ void AddStudio(CLI::App* app, int* status) {
                     "Put the shipped tools and fixtures on the table: hexagon keys, hammer, "
                     "screwdriver, spanner, caliper, vise, chuck, tray and V-block");
   AddAccessoryOptions(command, &options->load);
-  AddLoadOptions(command, &options->load);
+  AddLoadOptions(command, &options->load, Limited::kOpening);
   command->footer(kStudioFooter);
   command->callback([options, status] { *status = RunStudio(*options); });
 }

@@ -10,8 +10,10 @@
 
 #include <fmt/format.h>
 
+#include "base/crash_note.h"
 #include "base/units.h"
 #include "cad/encoding.h"
+#include "cad/length_unit.h"
 #include "mates/assignments.h"
 #include "mates/elastic_parts.h"
 #include "mates/flexible_parts.h"
@@ -27,9 +29,10 @@ namespace {
 using product::Product;
 
 Result<void> Check(const OpenOptions& options) {
-  if (const double unit = options.length_unit.value_or(1); !(unit > 0) || !std::isfinite(unit)) {
+  if (const double unit = options.length_unit.value_or(1); !cad::IsUsableLengthUnit(unit)) {
     return Fail(ErrorCode::kInvalid, fmt::format("{} m is no length unit", unit),
-                options.file.filename().string(), "give a length above 0, as 0.001");
+                options.file.filename().string(), fmt::format("give a length from {:g} to {:g} m, as 0.001", cad::kSmallestLengthUnit,
+                            cad::kLargestLengthUnit));
   }
   if (!options.encoding.empty() && !cad::IsEncoding(options.encoding)) {
     return Fail(ErrorCode::kInvalid, fmt::format("{} is no encoding", options.encoding),
@@ -85,6 +88,7 @@ Result<void> Relate(const OpenOptions& options, WorkWatch* watch, Product* produ
   if (!stated) {
     return Unexpected(stated.error());
   }
+  NoteStage("bought units");
   if (auto welded = product::WeldUnits(stated->apart, product, diagnostics, watch); !welded) {
     return welded;
   }
@@ -95,6 +99,7 @@ Result<void> Relate(const OpenOptions& options, WorkWatch* watch, Product* produ
   if (auto set = mates::SetElasticParts(stated->elastic, product); !set) {
     return set;
   }
+  NoteStage("mates");
   return mates::Infer(product, inferred, watch);
 }
 
@@ -106,6 +111,7 @@ Result<Product> OpenWithin(const OpenOptions& options, WorkWatch* watch, Diagnos
   }
   cad::ImportControl control;
   control.limits.time = options.limits.time;
+  control.limits.begin_ns = watch->begin_ns();
   control.limits.memory = options.limits.memory;
   control.cache_directory = options.cache_directory;
   control.stop = options.stop;
@@ -219,6 +225,7 @@ Result<void> AddAccessories(const OpenOptions& options, Product* product, WorkWa
 /** What is stated of a product whose parts are related, and what stands around it. */
 Result<Product> Complete(const OpenOptions& options, Product product, const Diagnostics& inferred,
                          WorkWatch* watch, Diagnostics* diagnostics) {
+  NoteStage("stated mates and fits");
   if (const auto applied = ApplyStated(options, &product, watch); !applied) {
     return Unexpected(applied.error());
   }
@@ -235,6 +242,7 @@ Result<Product> Complete(const OpenOptions& options, Product product, const Diag
   if (const auto added = AddAccessories(options, &product, watch, diagnostics); !added) {
     return Unexpected(added.error());
   }
+  NoteStage("");
   return product;
 }
 

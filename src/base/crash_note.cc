@@ -69,6 +69,10 @@ void NoteStage(std::string_view stage) noexcept {
   noted_stage.Set(stage);
 }
 
+std::string NotedStage() {
+  return {noted_stage.bytes.data(), noted_stage.size};
+}
+
 void NoteRecord(std::string_view path) noexcept {
   noted_record.Set(path);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 /** What the program was doing, for the message that it writes when it crashes. Each setter keeps
@@ -12,6 +13,9 @@ void NoteWork(std::string_view work) noexcept;
 
 /** The part of the work that has begun: "contact shapes". Empty: none. */
 void NoteStage(std::string_view stage) noexcept;
+
+/** The part of the work that was noted last; empty: none. */
+[[nodiscard]] std::string NotedStage();
 
 /** The file into which the session is being recorded. Empty: none. */
 void NoteRecord(std::string_view path) noexcept;

@@ -44,8 +44,11 @@ std::uint64_t DefaultMemoryLimit() {
 WorkWatch::WorkWatch(const WorkLimits& limits, std::stop_token stop)
     : limits_(limits),
       stop_(std::move(stop)),
-      deadline_ns_(MonotonicNs() + std::llround(1e9 * std::clamp(limits.time, 0.0, kLongest))),
       memory_before_(ReadMemoryInUse()) {
+  if (limits_.begin_ns == 0) {
+    limits_.begin_ns = MonotonicNs();
+  }
+  deadline_ns_ = limits_.begin_ns + std::llround(1e9 * std::clamp(limits.time, 0.0, kLongest));
   if (limits_.memory == 0) {
     limits_.memory = DefaultMemoryLimit();
   }
@@ -69,6 +72,13 @@ bool WorkWatch::MayGoOn() {
   return reason_ == Reason::kNone;
 }
 
+bool WorkWatch::MayVisitPair() {
+  if (reason_ == Reason::kNone && ++pairs_ > limits_.pairs) {
+    reason_ = Reason::kPairs;
+  }
+  return MayGoOn();
+}
+
 Error WorkWatch::Explain(std::string_view work, std::string where) const {
   HVAS_DEMAND(reason_ != Reason::kNone);
   switch (reason_) {
@@ -79,6 +89,11 @@ Error WorkWatch::Explain(std::string_view work, std::string where) const {
               fmt::format("{} needed more than {:.3g} GiB of memory, which is the limit", work,
                           static_cast<double>(limits_.memory) / (1U << 30U)),
               std::move(where), "raise --memory-limit, or export the product in parts"};
+    case Reason::kPairs:
+      return {ErrorCode::kOutOfResource,
+              fmt::format("{} had more than {} pairs of parts to look at, which is the limit", work,
+                          limits_.pairs),
+              std::move(where), "export the product in parts"};
     case Reason::kTime:
     case Reason::kNone:
       break;

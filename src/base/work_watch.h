@@ -13,6 +13,10 @@ namespace hvas {
 struct WorkLimits {
   double time{120};         ///< [s]
   std::uint64_t memory{0};  ///< [bytes]; 0: DefaultMemoryLimit().
+  /** Pairs of parts that are looked at, in all steps together. A choice: 16,384 parts that all
+   touch one another have 1.3e8. */
+  std::uint64_t pairs{1'000'000'000};
+  std::int64_t begin_ns{0};  ///< When the work began, by MonotonicNs(); 0: with the watch.
 };
 
 /** 4 GiB, or three quarters of the machine's memory where that is less [bytes]. */
@@ -22,25 +26,32 @@ struct WorkLimits {
  are left when it says no; then the work fails with Explain(). For one thread. */
 class WorkWatch {
  public:
-  /** The work begins now. What this process holds in memory already does not count. */
+  /** The work begins now, or at WorkLimits::begin_ns. What this process holds in memory already does not count. */
   explicit WorkWatch(const WorkLimits& limits, std::stop_token stop = {});
 
   /** False from the moment on when a limit is reached or a stop is asked for. Costs some 30 ns, and
    a look at the memory now and then. */
   [[nodiscard]] bool MayGoOn();
 
+  /** MayGoOn(), for each pair of parts that is looked at. */
+  [[nodiscard]] bool MayVisitPair();
+
+  /** When the work began, by MonotonicNs(). */
+  [[nodiscard]] std::int64_t begin_ns() const { return limits_.begin_ns; }
+
   /** @param work  What was being done: "finding the mates". @param where  The file.
    @pre MayGoOn() has said no. */
   [[nodiscard]] Error Explain(std::string_view work, std::string where) const;
 
  private:
-  enum class Reason { kNone, kTime, kMemory, kStop };
+  enum class Reason { kNone, kTime, kMemory, kPairs, kStop };
 
   WorkLimits limits_;
   std::stop_token stop_;
-  std::int64_t deadline_ns_;
+  std::int64_t deadline_ns_{0};
   std::int64_t next_look_ns_{0};  // When the memory is looked at again.
   std::uint64_t memory_before_;
+  std::uint64_t pairs_{0};  // That were looked at.
   Reason reason_{Reason::kNone};
 };
 

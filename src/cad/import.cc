@@ -38,7 +38,8 @@ class Attempts {
     const double part_time =
         limits.part_time > 0 ? std::min(limits.part_time, kLongest) : kPartShare * time;
     call_.program = std::move(worker);
-    call_.deadline_ns = MonotonicNs() + std::llround(1e9 * time);
+    call_.deadline_ns =
+        (limits.begin_ns != 0 ? limits.begin_ns : MonotonicNs()) + std::llround(1e9 * time);
     call_.part_limit_ns = std::llround(1e9 * part_time);
     const std::uint64_t memory = limits.memory > 0 ? limits.memory : DefaultMemoryLimit();
     call_.memory = ShareOfReader(memory);
@@ -120,9 +121,13 @@ Unexpected Attempts::GiveUp(const WorkerRun& run) const {
   if (run.part) {
     at = fmt::format(" while it processed the part \"{}\"", run.part_name);
   } else if (!run.stage.empty()) {
-    at = fmt::format(" at the stage \"{}\"", run.stage);
+    at = fmt::format(" while it was at the stage \"{}\"", run.stage);
   }
-  const std::string message = fmt::format("the reader {}{}", run.Describe(), at);
+  const std::string message = run.fate == WorkerFate::kCrashed
+                                  ? fmt::format("the reader of CAD files crashed on this file "
+                                                "(signal {}){}",
+                                                run.signal, at)
+                                  : fmt::format("the reader {}{}", run.Describe(), at);
   switch (run.fate) {
     case WorkerFate::kCancelled:
       return Fail(ErrorCode::kCancelled, "opening the file was cancelled", name_);

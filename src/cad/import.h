@@ -48,6 +48,7 @@ struct ImportOptions {
 /** What an import may take. */
 struct ImportLimits {
   double time{WorkLimits().time};  ///< All attempts together [s].
+  std::int64_t begin_ns{0};        ///< When the time begins, by MonotonicNs(); 0: with the import.
   double part_time{0};             ///< One part, or the tolerances [s]; 0: a fifth of `time`.
   std::uint64_t memory{0};  ///< [bytes]; 0: DefaultMemoryLimit(). A quarter is for the product.
 };

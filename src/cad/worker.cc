@@ -275,7 +275,7 @@ std::string WorkerRun::Describe() const {
     case WorkerFate::kNoMemory:
       return signal != 0 ? "was killed, probably for lack of memory" : "exceeded the memory limit";
     case WorkerFate::kCrashed:
-      return fmt::format("crashed ({})", ::sigdescr_np(signal));
+      return fmt::format("crashed (signal {})", signal);
     case WorkerFate::kFailed:
       break;
   }

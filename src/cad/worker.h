@@ -63,7 +63,7 @@ struct WorkerRun {
   std::string part_name;
   MappedFile output;  ///< What one that finished has written.
 
-  /** What happened, for people: "crashed (segmentation fault)". */
+  /** What happened, for people: "crashed (signal 11)". */
   [[nodiscard]] std::string Describe() const;
 };
 

@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
-#include "mates/pair_search.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::mates {
 namespace {
@@ -204,35 +205,36 @@ spatial::Box BoxOf(const Product& product, OccurrenceId id) {
   return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
 }
 
-/** The mate between two parts whose drawn radii overlap most; null where none do. */
-const product::Mate* FindInterference(const Product& product, OccurrenceId a, OccurrenceId b) {
+/** The mates with a fit of two parts, in their order. */
+using Fits = std::vector<const product::Mate*>;
+
+/** The mate whose drawn radii overlap most; null where none do. */
+const product::Mate* FindInterference(const Fits& fits) {
   const product::Mate* widest = nullptr;
   double most = kInterference;
-  for (const product::Mate& mate : product.mates) {
-    if (mate.Joins(a, b) && mate.fit && mate.shaft_radius - mate.hole_radius > most) {
-      most = mate.shaft_radius - mate.hole_radius;
-      widest = &mate;
+  for (const product::Mate* mate : fits) {
+    if (mate->shaft_radius - mate->hole_radius > most) {
+      most = mate->shaft_radius - mate->hole_radius;
+      widest = mate;
     }
   }
   return widest;
 }
 
-/** The thread between two parts; null where there is none. */
-const product::Mate* FindThread(const Product& product, OccurrenceId a, OccurrenceId b) {
-  const auto found =
-      std::find_if(product.mates.begin(), product.mates.end(), [&](const product::Mate& mate) {
-        return mate.Joins(a, b) && mate.fit && mate.fit->kind == product::FitKind::kThread;
-      });
-  return found == product.mates.end() ? nullptr : &*found;
+/** The first thread; null where there is none. */
+const product::Mate* FindThread(const Fits& fits) {
+  const auto found = std::find_if(fits.begin(), fits.end(), [](const product::Mate* mate) {
+    return mate->fit->kind == product::FitKind::kThread;
+  });
+  return found == fits.end() ? nullptr : *found;
 }
 
 /** What of the space between two parts a mate explains. */
-void Explain(const Product& product, SharedVolume* shared) {
-  const product::Mate* mate = FindInterference(product, shared->a, shared->b);
+void Explain(const Fits& fits, SharedVolume* shared) {
+  const product::Mate* mate = FindInterference(fits);
   // The ring that locks a nut is narrower than its thread: in ISO 7040 by 0.22 of the radius.
   constexpr double kRing = 0.3;  // Of the screw's radius: a choice.
-  const product::Mate* thread =
-      mate == nullptr ? FindThread(product, shared->a, shared->b) : nullptr;
+  const product::Mate* thread = mate == nullptr ? FindThread(fits) : nullptr;
   if (thread != nullptr && shared->depth > kTouching &&
       shared->depth < kRing * thread->shaft_radius) {
     shared->mate = thread->id;
@@ -249,8 +251,8 @@ void Explain(const Product& product, SharedVolume* shared) {
                                                                : SharedVolume::Cause::kPressFit;
 }
 
-SharedVolume Measure(const Product& product, const Triangles& a, const Triangles& b,
-                     SharedVolume shared) {
+SharedVolume Measure(const Product& product, const Fits& fits, const Triangles& a,
+                     const Triangles& b, SharedVolume shared) {
   const spatial::Box box_a = BoxOf(product, shared.a);
   const spatial::Box box_b = BoxOf(product, shared.b);
   const spatial::Box box{box_a.low.cwiseMax(box_b.low), box_a.high.cwiseMin(box_b.high)};
@@ -270,7 +272,7 @@ SharedVolume Measure(const Product& product, const Triangles& a, const Triangles
     of_b.insert(of_b.end(), found.of_b.begin(), found.of_b.end());
   }
   shared.depth = std::max(CalcDepth(of_a, of_b), CalcDepth(of_b, of_a));
-  Explain(product, &shared);
+  Explain(fits, &shared);
   return shared;
 }
 
@@ -292,10 +294,16 @@ SharedVolume MeasureSharedVolume(const Product& product, OccurrenceId a, Occurre
   SharedVolume shared;
   shared.a = a;
   shared.b = b;
-  return Measure(product, Triangles(product, a), Triangles(product, b), shared);
+  Fits fits;
+  for (const product::Mate& mate : product.mates) {
+    if (mate.fit && mate.Joins(a, b)) {
+      fits.push_back(&mate);
+    }
+  }
+  return Measure(product, fits, Triangles(product, a), Triangles(product, b), shared);
 }
 
-std::vector<SharedVolume> ListSharedVolumes(const Product& product) {
+std::vector<SharedVolume> ListSharedVolumes(const Product& product, WorkWatch* watch) {
   std::vector<spatial::Box> boxes;
   for (const product::Occurrence& occurrence : product.occurrences) {
     boxes.push_back(BoxOf(product, occurrence.id));
@@ -307,16 +315,26 @@ std::vector<SharedVolume> ListSharedVolumes(const Product& product) {
     }
     return *triangles[i];
   };
+  std::map<std::pair<OccurrenceId, OccurrenceId>, Fits> fits;
+  for (const product::Mate& mate : product.mates) {
+    if (mate.fit) {
+      fits[std::minmax(mate.a.occurrence, mate.b.occurrence)].push_back(&mate);
+    }
+  }
+  const Fits none;
   std::vector<SharedVolume> list;
-  for (const auto& [a, b] : FindBoxPairs(boxes, 0)) {
+  spatial::ForEachPair(boxes, 0, watch, [&](std::size_t a, std::size_t b) {
     SharedVolume shared;
     shared.a = OccurrenceId(a);
     shared.b = OccurrenceId(b);
-    shared = Measure(product, triangles_of(a), triangles_of(b), shared);
+    const auto known = fits.find(std::pair(shared.a, shared.b));
+    shared = Measure(product, known == fits.end() ? none : known->second, triangles_of(a),
+                     triangles_of(b), shared);
     if (shared.cause != SharedVolume::Cause::kOverlap || shared.depth > kTouching) {
       list.push_back(shared);
     }
-  }
+    return true;
+  });
   return list;
 }
 

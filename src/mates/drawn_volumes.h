@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/work_watch.h"
 #include "product/product.h"
 
 namespace hvas::mates {
@@ -34,7 +35,8 @@ struct SharedVolume {
                                                product::OccurrenceId a, product::OccurrenceId b);
 
 /** Lists the pairs of parts whose mates have a drawn interference above 1 um, or that lie in one
- another deeper than 50 um, in the order of their ids. */
-[[nodiscard]] std::vector<SharedVolume> ListSharedVolumes(const product::Product& product);
+ another deeper than 50 um, in the order of their ids. Incomplete when the watch ends it. */
+[[nodiscard]] std::vector<SharedVolume> ListSharedVolumes(const product::Product& product,
+                                                          WorkWatch* watch = nullptr);
 
 }  // namespace hvas::mates

@@ -23,6 +23,7 @@
 #include "mates/surface_pairs.h"
 #include "mates/unit_doubt.h"
 #include "product/same_place.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::mates {
 namespace {
@@ -118,21 +119,18 @@ class Inference {
       largest = std::max(largest, SizeOf(occurrence.id));
     }
     PairSearch search(*product_, limits_, watch_);
-    for (const auto& [i, j] :
-         FindBoxPairs(boxes, limits_.near_gap * CalcLengthScale(largest), watch_)) {
-      if (!MayGoOn(watch_)) {
-        return;
+    const double margin = limits_.near_gap * CalcLengthScale(largest);
+    spatial::ForEachPair(boxes, margin, watch_, [&](std::size_t i, std::size_t k) {
+      const PairHits& hits = search.Find(OccurrenceId(i), OccurrenceId(k));
+      if (!hits.is_empty()) {
+        Pair pair{OccurrenceId(i), OccurrenceId(k), hits, axis_hits_.size()};
+        for (const AxisHit& hit : pair.hits.axes) {
+          axis_hits_.push_back(Place(pair, hit));
+        }
+        pairs_.push_back(std::move(pair));
       }
-      const PairHits& hits = search.Find(OccurrenceId(i), OccurrenceId(j));
-      if (hits.is_empty()) {
-        continue;
-      }
-      Pair pair{OccurrenceId(i), OccurrenceId(j), hits, axis_hits_.size()};
-      for (const AxisHit& hit : pair.hits.axes) {
-        axis_hits_.push_back(Place(pair, hit));
-      }
-      pairs_.push_back(std::move(pair));
-    }
+      return true;
+    });
   }
 
   [[nodiscard]] PlacedAxisHit Place(const Pair& pair, const AxisHit& hit) const {

@@ -145,10 +145,4 @@ class PairSearch {
   PairHits last_;
 };
 
-/** All pairs of boxes that come within `margin` of each other, in ascending order, by a sweep along
- the axis on which the boxes are shortest against the whole. Empty boxes pair with nothing. Ends
- early when the watch says so. */
-[[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> FindBoxPairs(
-    const std::vector<spatial::Box>& boxes, double margin, WorkWatch* watch = nullptr);
-
 }  // namespace hvas::mates

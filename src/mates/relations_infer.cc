@@ -10,9 +10,9 @@
 
 #include "base/units.h"
 #include "mates/limits.h"
-#include "mates/pair_search.h"
 #include "mates/relations.h"
 #include "product/face_adjacency.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::mates {
 namespace {
@@ -360,9 +360,10 @@ std::vector<Relation> RelationSearch::Run() {
   for (const product::Occurrence& occurrence : product_.occurrences) {
     boxes.push_back(Transform(occurrence.X_WB, product_.part_of(occurrence.id).box_B));
   }
-  for (const auto& [a, b] : FindBoxPairs(boxes, limits_.near, watch_)) {
-    pairs.insert(std::minmax(OccurrenceId(a), OccurrenceId(b)));
-  }
+  spatial::ForEachPair(boxes, limits_.near, watch_, [&](std::size_t a, std::size_t b) {
+    pairs.insert(std::pair(OccurrenceId(a), OccurrenceId(b)));
+    return true;
+  });
   AddHoles();
   for (const auto& [a, b] : pairs) {
     if (!MayGoOn(watch_)) {

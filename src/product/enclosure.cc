@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "product/mesh_ray.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::product {
 namespace {
@@ -113,34 +114,40 @@ std::vector<std::pair<OccurrenceId, OccurrenceId>> FindEnclosed(const Product& p
   for (const Occurrence& occurrence : product.occurrences) {
     boxes.push_back(spatial::Transform(occurrence.X_WB, product.part_of(occurrence.id).box_B));
   }
-  std::vector<std::pair<OccurrenceId, OccurrenceId>> found;
+  std::vector<OccurrenceId> around(boxes.size());  // The smallest part with a cavity around each.
   const std::vector<Vec3> directions = ListCubeDirections();
-  for (std::size_t i = 0; i < boxes.size() && MayGoOn(watch); ++i) {
-    OccurrenceId best;
-    std::vector<Vec3> samples;
-    for (std::size_t k = 0; k < boxes.size(); ++k) {
-      const bool may_hold =
-          i != k && IsInside(boxes[i], boxes[k]) &&
-          boxes[i].size().norm() < kSmaller * boxes[k].size().norm() &&
-          product.parts[product.occurrences[k].part.index()].mass.volume > 0 &&
-          (!best.is_valid() || boxes[k].size().norm() < boxes[best.index()].size().norm());
-      if (!may_hold || !MayGoOn(watch)) {
-        continue;
-      }
-      if (samples.empty()) {
-        samples = ListSamples(product, OccurrenceId(i));
-      }
-      best = IsInCavity(product, samples, directions, OccurrenceId(k)) ? OccurrenceId(k) : best;
+  std::vector<Vec3> samples;  // Of the part `sampled`.
+  OccurrenceId sampled;
+  spatial::ForEachPair(boxes, boxes, 0, watch, [&](std::size_t i, std::size_t k) {
+    const OccurrenceId best = around[i];
+    const bool may_hold =
+        i != k && IsInside(boxes[i], boxes[k]) &&
+        boxes[i].size().norm() < kSmaller * boxes[k].size().norm() &&
+        product.parts[product.occurrences[k].part.index()].mass.volume > 0 &&
+        (!best.is_valid() || boxes[k].size().norm() < boxes[best.index()].size().norm());
+    if (!may_hold) {
+      return true;
     }
-    if (best.is_valid()) {
-      found.emplace_back(OccurrenceId(i), best);
+    if (sampled != OccurrenceId(i)) {
+      sampled = OccurrenceId(i);
+      samples = ListSamples(product, sampled);
+    }
+    if (IsInCavity(product, samples, directions, OccurrenceId(k))) {
+      around[i] = OccurrenceId(k);
+    }
+    return true;
+  });
+  std::vector<std::pair<OccurrenceId, OccurrenceId>> found;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    if (around[i].is_valid()) {
+      found.emplace_back(OccurrenceId(i), around[i]);
     }
   }
   return found;
 }
 
 bool HasStraightWayOut(const Product& product, OccurrenceId id,
-                       const std::vector<OccurrenceId>& others) {
+                       const std::vector<OccurrenceId>& others, WorkWatch* watch) {
   std::vector<Vec3> directions = ListCubeDirections();
   AddAxes(product, id, &directions);
   for (const OccurrenceId other : others) {
@@ -151,6 +158,9 @@ bool HasStraightWayOut(const Product& product, OccurrenceId id,
   return std::any_of(directions.begin(), directions.end(), [&](const Vec3& dir_W) {
     std::size_t blocked = 0;
     for (const Vec3& p_W : samples) {
+      if (!MayGoOn(watch)) {
+        return true;
+      }
       const bool is_blocked = std::any_of(others.begin(), others.end(), [&](OccurrenceId other) {
         return IsBlockedBy(product, other, p_W, dir_W);
       });

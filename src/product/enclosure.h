@@ -15,9 +15,11 @@ namespace hvas::product {
     const Product& product, WorkWatch* watch = nullptr);
 
 /** Whether a part can go away from others in a straight line: along one of its axes and normals, of
- theirs, or of W. One in twenty of its points may be blocked, as where faces touch. */
+ theirs, or of W. One in twenty of its points may be blocked, as where faces touch. True when the
+ watch ends it. */
 [[nodiscard]] bool HasStraightWayOut(const Product& product, OccurrenceId id,
-                                     const std::vector<OccurrenceId>& others);
+                                     const std::vector<OccurrenceId>& others,
+                                     WorkWatch* watch = nullptr);
 
 /** Counts the others that have a hole on the axis of a fastener, along its shank. */
 [[nodiscard]] int CountHeld(const Product& product, OccurrenceId fastener,

@@ -278,14 +278,14 @@ std::vector<std::vector<OccurrenceId>> FindRollingBearings(const Product& produc
   }
   std::vector<bool> is_taken(product.occurrences.size(), false);
   for (const Occurrence& occurrence : product.occurrences) {
-    if (!MayGoOn(watch)) {
-      break;
-    }
     for (const Axis& axis : ListRingAxes(product, occurrence.id)) {
-      if (!is_free[occurrence.id.index()]) {
+      if (!is_free[occurrence.id.index()] || !MayGoOn(watch)) {
         continue;
       }
       for (const Circle& circle : FindCircles(elements, axis, is_taken)) {
+        if (!MayGoOn(watch)) {
+          return bearings;
+        }
         const std::vector<OccurrenceId> members = CompleteBearing(product, circle, is_free);
         for (const OccurrenceId id : members) {
           is_free[id.index()] = false;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "product/mesh_ray.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::product {
 namespace {
@@ -206,19 +207,18 @@ std::vector<VariantPair> FindVariants(const Product& product, WorkWatch* watch) 
   }
   std::vector<bool> is_left_out(count, false);
   std::vector<VariantPair> pairs;
-  for (std::size_t i = 0; i < count && MayGoOn(watch); ++i) {
-    for (std::size_t k = i + 1; k < count && !is_left_out[i]; ++k) {
-      const OccurrenceId first(i);
-      const OccurrenceId second(k);
-      if (is_left_out[k] || !MayBeVariants(product, boxes, first, second) || !MayGoOn(watch)) {
-        continue;
-      }
-      if (const auto shared = CompareVariants(product, first, second)) {
-        pairs.push_back({first, second, *shared});
-        is_left_out[k] = true;
-      }
+  spatial::ForEachPair(boxes, 0, watch, [&](std::size_t i, std::size_t k) {
+    const OccurrenceId first(i);
+    const OccurrenceId second(k);
+    if (is_left_out[i] || is_left_out[k] || !MayBeVariants(product, boxes, first, second)) {
+      return true;
     }
-  }
+    if (const auto shared = CompareVariants(product, first, second)) {
+      pairs.push_back({first, second, *shared});
+      is_left_out[k] = true;
+    }
+    return true;
+  });
   return pairs;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "product/same_place.h"
 #include "product/variants.h"
 #include "product/words.h"
+#include "spatial/box_pairs.h"
 
 namespace hvas::product {
 namespace {
@@ -44,10 +46,6 @@ bool IsKeptApart(const Product& product, const Weld& weld, const std::vector<Kep
            std::any_of(weld.members.begin(), weld.members.end(),
                        [&](OccurrenceId id) { return IsCalled(product, id, wanted); });
   });
-}
-
-Box BoxInWorld(const Product& product, OccurrenceId id) {
-  return spatial::Transform(product.occurrences[id.index()].X_WB, product.part_of(id).box_B);
 }
 
 /** The names that CAD systems and readers give to bodies that have none of their own. */
@@ -81,7 +79,13 @@ class UnitSearch {
       : product_(product),
         apart_(apart),
         watch_(watch),
-        is_free_(product.occurrences.size(), true) {}
+        is_free_(product.occurrences.size(), true) {
+    for (const Occurrence& occurrence : product.occurrences) {
+      boxes_.push_back(
+          spatial::Transform(occurrence.X_WB, product.part_of(occurrence.id).box_B));
+      is_fastener_.push_back(HasNameOfFastener(occurrence));
+    }
+  }
 
   std::vector<Weld> Run() {
     AddComponents();
@@ -132,12 +136,21 @@ class UnitSearch {
     return levels;
   }
 
-  [[nodiscard]] bool IsFastener(OccurrenceId id) const {
-    const Occurrence& occurrence = product_.occurrences[id.index()];
-    return ClassifyName(product_.part_of(id).name) != FastenerKind::kNone ||
+  [[nodiscard]] bool HasNameOfFastener(const Occurrence& occurrence) const {
+    return ClassifyName(product_.part_of(occurrence.id).name) != FastenerKind::kNone ||
            ClassifyName(occurrence.name) != FastenerKind::kNone ||
            (IsBodyName(occurrence.name) &&
             ClassifyName(NodeOf(occurrence.parent).name) != FastenerKind::kNone);
+  }
+
+  [[nodiscard]] bool IsFastener(OccurrenceId id) const { return is_fastener_[id.index()]; }
+
+  [[nodiscard]] std::vector<Box> BoxesOf(const std::vector<OccurrenceId>& ids) const {
+    std::vector<Box> boxes;
+    for (const OccurrenceId id : ids) {
+      boxes.push_back(boxes_[id.index()]);
+    }
+    return boxes;
   }
 
   /** Rule 3, from the root downwards. */
@@ -196,7 +209,7 @@ class UnitSearch {
       }
     }
     const bool can_come_off = std::all_of(mounted.begin(), mounted.end(), [&](OccurrenceId id) {
-      return HasStraightWayOut(product_, id, rest);
+      return HasStraightWayOut(product_, id, rest, watch_);
     });
     if (!mounted.empty() && can_come_off) {
       *members = std::move(rest);
@@ -208,7 +221,7 @@ class UnitSearch {
   [[nodiscard]] bool IsAssembledAround(const std::vector<OccurrenceId>& members) const {
     Box box;
     for (const OccurrenceId id : members) {
-      box.Add(BoxInWorld(product_, id));
+      box.Add(boxes_[id.index()]);
     }
     for (const Occurrence& other : product_.occurrences) {
       if (!MayGoOn(watch_)) {
@@ -217,13 +230,13 @@ class UnitSearch {
       if (std::binary_search(members.begin(), members.end(), other.id)) {
         continue;
       }
-      const Box other_box = BoxInWorld(product_, other.id);
+      const Box& other_box = boxes_[other.id.index()];
       if (!other_box.Overlaps(box)) {
         continue;
       }
       if (IsFastener(other.id) ? CountHeld(product_, other.id, members) >= 2
                                : box.Contains(other_box.low) && box.Contains(other_box.high) &&
-                                     !HasStraightWayOut(product_, other.id, members)) {
+                                     !HasStraightWayOut(product_, other.id, members, watch_)) {
         return true;
       }
     }
@@ -263,32 +276,13 @@ class UnitSearch {
   /** Whether the boxes of all touch, one by one; 2 % of the whole count as touching. */
   [[nodiscard]] bool AreConnected(const std::vector<OccurrenceId>& members) const {
     constexpr double kTouching = 0.02;  // Part of the whole: a choice.
-    if (members.empty()) {
-      return true;
-    }
+    const std::vector<Box> boxes = BoxesOf(members);
     Box all;
-    std::vector<Box> boxes;
-    for (const OccurrenceId id : members) {
-      boxes.push_back(BoxInWorld(product_, id));
-      all.Add(boxes.back());
+    for (const Box& box : boxes) {
+      all.Add(box);
     }
     const double slack = kTouching * (all.is_empty() ? 0.0 : all.size().norm());
-    std::vector<bool> is_reached(boxes.size(), false);
-    std::vector<std::size_t> open{0};
-    std::size_t reached = 1;
-    is_reached[0] = true;
-    while (!open.empty()) {
-      const Box near = boxes[open.back()].Expanded(slack);
-      open.pop_back();
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (!is_reached[i] && near.Overlaps(boxes[i])) {
-          is_reached[i] = true;
-          ++reached;
-          open.push_back(i);
-        }
-      }
-    }
-    return reached == boxes.size();
+    return spatial::AreConnected(boxes, slack, watch_);
   }
 
   /** Rule 1: bodies that one part of the file is drawn with. */
@@ -318,31 +312,35 @@ class UnitSearch {
    all parts of a flat file are, only fasteners have such. */
   void AddSurfaces(const Subassembly& node, bool are_bodies) {
     constexpr double kInside = 0.01;  // Part of the box that a surface may stand out. A choice.
-    std::map<OccurrenceId, std::vector<OccurrenceId>> surfaces_of;
+    std::vector<OccurrenceId> surfaces;
+    std::vector<OccurrenceId> solids;
+    std::vector<Box> near;  // Of each solid, what stands out a little.
     for (const OccurrenceId id : node.occurrences) {
-      if (product_.part_of(id).mass.volume > 0) {
-        continue;
+      if (!(product_.part_of(id).mass.volume > 0)) {
+        surfaces.push_back(id);
+      } else if (is_free_[id.index()] &&
+                 (node.parent.is_valid() || are_bodies || IsFastener(id))) {
+        const Box& box = boxes_[id.index()];
+        solids.push_back(id);
+        near.push_back(box.is_empty() ? Box() : box.Expanded(kInside * box.size().norm()));
       }
-      const Box surface = BoxInWorld(product_, id);
-      OccurrenceId best;
-      double best_size = 0;
-      for (const OccurrenceId solid : node.occurrences) {
-        const bool may_have = node.parent.is_valid() || are_bodies || IsFastener(solid);
-        if (!may_have || !(product_.part_of(solid).mass.volume > 0) || !is_free_[solid.index()]) {
-          continue;
-        }
-        const Box box = BoxInWorld(product_, solid);
-        const double size = box.size().norm();
-        const Box near = box.Expanded(kInside * size);
-        const bool is_inside = near.Contains(surface.low) && near.Contains(surface.high);
-        if ((is_inside || (are_bodies && near.Overlaps(surface))) &&
-            (!best.is_valid() || size < best_size)) {
-          best = solid;
-          best_size = size;
-        }
+    }
+    constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+    std::vector<std::size_t> solid_of(surfaces.size(), kNone);
+    const std::vector<Box> boxes = BoxesOf(surfaces);
+    const auto size_of = [&](std::size_t k) { return boxes_[solids[k].index()].size().norm(); };
+    spatial::ForEachPair(boxes, near, 0, watch_, [&](std::size_t i, std::size_t k) {
+      const bool is_inside = near[k].Contains(boxes[i].low) && near[k].Contains(boxes[i].high);
+      if ((is_inside || are_bodies) &&
+          (solid_of[i] == kNone || size_of(k) < size_of(solid_of[i]))) {
+        solid_of[i] = k;
       }
-      if (best.is_valid()) {
-        surfaces_of[best].push_back(id);
+      return true;
+    });
+    std::map<OccurrenceId, std::vector<OccurrenceId>> surfaces_of;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      if (solid_of[i] != kNone) {
+        surfaces_of[solids[solid_of[i]]].push_back(surfaces[i]);
       }
     }
     for (auto& [solid, members] : surfaces_of) {
@@ -375,6 +373,8 @@ class UnitSearch {
   const Product& product_;
   const std::vector<KeptApart>& apart_;
   WorkWatch* watch_;
+  std::vector<Box> boxes_;  // Of the occurrences, in W.
+  std::vector<bool> is_fastener_;
   std::vector<bool> is_free_;
   std::vector<Weld> welds_;
 };

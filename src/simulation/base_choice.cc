@@ -15,12 +15,15 @@ OccurrenceId ChooseBase(const product::Product& product, const std::vector<Occur
   // What most is joined to, where the largest is joined to little: a propeller's motor. Choices.
   constexpr std::size_t kTimesAsMany = 3;
   constexpr double kLeastSize = 0.1;  // Share of the largest one's volume.
+  std::vector<bool> is_candidate(neighbours.size(), false);
+  for (const OccurrenceId id : parts) {
+    is_candidate[id.index()] = true;
+  }
   const auto count_joined = [&](OccurrenceId id) {
     const std::vector<OccurrenceId>& others = neighbours[id.index()];
     return static_cast<std::size_t>(
-        std::count_if(others.begin(), others.end(), [&parts](OccurrenceId other) {
-          return std::find(parts.begin(), parts.end(), other) != parts.end();
-        }));
+        std::count_if(others.begin(), others.end(),
+                      [&](OccurrenceId other) { return is_candidate[other.index()]; }));
   };
   const OccurrenceId largest = parts.back();
   const double least_size = kLeastSize * SizeOf(product.part_of(largest));

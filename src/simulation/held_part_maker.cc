@@ -278,18 +278,18 @@ void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held)
     if (fastener.role != BodyRole::kPart || state.placement != Placement::kPlaced) {
       continue;
     }
-    const auto mates = ListToolMates(fastener.drives, tool.drives);
-    if (mates.empty()) {
+    const auto tool_mates = ListToolMates(fastener.drives, tool.drives);
+    if (tool_mates.empty()) {
       continue;
     }
-    for (const ToolMate& mate : mates) {
+    for (const ToolMate& mate : tool_mates) {
       held->mates.push_back(MakeDriveMate(mate, fastener.occurrence, state.X_WB));
     }
     haptics::HeldDrive drive;
     drive.body = contact::BodyId(fastener.occurrence.index());
     drive.X_WB_seat = fastener.X_WB_goal;
-    drive.p_WQ = fastener.X_WB_goal * mates.front().fastener.origin_B;
-    drive.axis_W = fastener.X_WB_goal.q() * -mates.front().fastener.axis_B;
+    drive.p_WQ = fastener.X_WB_goal * tool_mates.front().fastener.origin_B;
+    drive.axis_W = fastener.X_WB_goal.q() * -tool_mates.front().fastener.axis_B;
     drive.travel = FindLead(model_.product->part_of(fastener.occurrence)) / units::kTurn;
     drive.torque = model_.accessories.fastener_torque;
     held->drives.push_back(drive);

@@ -139,11 +139,13 @@ void MatchGaps(Model* model) {
   }
   std::vector<SequenceGap>& gaps = model->sequence.gaps;
   std::erase_if(gaps, [&](const SequenceGap& gap) { return is_in_step[gap.occurrence.index()]; });
+  std::vector<bool> is_gap(model->bodies.size(), false);
+  for (const SequenceGap& gap : gaps) {
+    is_gap[gap.occurrence.index()] = true;
+  }
   for (const Body& body : model->bodies) {
-    const bool is_known = std::any_of(gaps.begin(), gaps.end(), [&body](const SequenceGap& gap) {
-      return gap.occurrence == body.occurrence;
-    });
-    if (body.role == BodyRole::kPart && !is_in_step[body.occurrence.index()] && !is_known) {
+    const std::size_t i = body.occurrence.index();
+    if (body.role == BodyRole::kPart && !is_in_step[i] && !is_gap[i]) {
       gaps.push_back({body.occurrence, "it has no step in the order that is followed"});
     }
   }

@@ -111,10 +111,14 @@ class CutSearch {
 class NeighbourList {
  public:
   NeighbourList(std::size_t count, const std::vector<OccurrenceId>& absent)
-      : absent_(absent), neighbours_(count) {}
+      : is_absent_(count, false), neighbours_(count) {
+    for (const OccurrenceId id : absent) {
+      is_absent_[id.index()] = true;
+    }
+  }
 
   void Connect(OccurrenceId a, OccurrenceId b) {
-    if (a != b && !IsAbsent(a) && !IsAbsent(b)) {
+    if (a != b && !is_absent_[a.index()] && !is_absent_[b.index()]) {
       neighbours_[a.index()].push_back(b);
       neighbours_[b.index()].push_back(a);
     }
@@ -138,11 +142,7 @@ class NeighbourList {
   }
 
  private:
-  [[nodiscard]] bool IsAbsent(OccurrenceId id) const {
-    return std::find(absent_.begin(), absent_.end(), id) != absent_.end();
-  }
-
-  const std::vector<OccurrenceId>& absent_;
+  std::vector<bool> is_absent_;
   Neighbours neighbours_;
 };
 
@@ -155,11 +155,14 @@ Neighbours FindMated(const product::Product& product, const std::vector<Occurren
 }
 
 Neighbours FindNeighbours(const product::Product& product, const contact::Scene& scene,
-                          const std::vector<OccurrenceId>& absent) {
+                          const std::vector<OccurrenceId>& absent, const std::stop_token& stop) {
   NeighbourList list(product.occurrences.size(), absent);
   list.ConnectMated(product);
   contact::QueryWorkspace workspace;
   for (const product::Occurrence& occurrence : product.occurrences) {
+    if (stop.stop_requested()) {
+      break;
+    }
     const contact::BodyId self(occurrence.id.index());
     for (const contact::BodyId body : ListTouched(scene, self, &workspace)) {
       list.Connect(occurrence.id, OccurrenceId(body.index()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "contact/scene.h"
@@ -16,10 +17,11 @@ using Neighbours = std::vector<std::vector<product::OccurrenceId>>;
 
 /** Finds for each part the parts that it has a mate with, or touches as drawn to 0.1 mm.
  @param scene  All parts at their drawn poses; body index = occurrence index.
- @param absent  Parts that hold nothing and are not held. */
+ @param absent  Parts that hold nothing and are not held. @param stop  Ends the search early. */
 [[nodiscard]] Neighbours FindNeighbours(const product::Product& product,
                                         const contact::Scene& scene,
-                                        const std::vector<product::OccurrenceId>& absent);
+                                        const std::vector<product::OccurrenceId>& absent,
+                                        const std::stop_token& stop);
 
 /** Lists those of some parts whose removal would leave others, which are connected with them now,
  without a connection through neighbours: the cut vertices of their graph (Tarjan, SIAM J. Computing

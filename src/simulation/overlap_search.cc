@@ -59,9 +59,13 @@ std::vector<DrawnOverlap> OverlapSearch::Find() {
 
 std::vector<contact::BodyId> OverlapSearch::ListExamined(OccurrenceId id) const {
   std::vector<contact::BodyId> partners;
-  for (const DrawnOverlap& overlap : overlaps_) {
-    const bool is_own = overlap.a == id || overlap.b == id;
-    if (is_own && overlap.answer != DrawnOverlap::Answer::kRelief) {
+  const auto own = entries_of_.find(id);
+  if (own == entries_of_.end()) {
+    return partners;
+  }
+  for (const std::size_t entry : own->second) {
+    const DrawnOverlap& overlap = overlaps_[entry];
+    if (overlap.answer != DrawnOverlap::Answer::kRelief) {
       partners.emplace_back((overlap.a == id ? overlap.b : overlap.a).index());
     }
   }
@@ -81,18 +85,21 @@ void OverlapSearch::FindDeeper(double depth) {
     query.self = self;
     // A query reports a limited number of contacts: ask again without those found until none is
     // left.
-    for (bool is_clear = false; !is_clear;) {
+    for (bool is_clear = false; !is_clear && !input_.stop.stop_requested();) {
       const std::vector<contact::BodyId> examined = ListExamined(occurrence.id);
       query.left_out[0] = examined;
       input_.scene->Query(input_.scene->shape(self), occurrence.X_WB, query, &workspace_);
-      std::set<contact::BodyId> bodies;
+      std::set<contact::BodyId> touched;
       for (const contact::Contact& contact : workspace_.contacts()) {
         if (contact.body.is_valid() && contact.distance < -depth) {
-          bodies.insert(contact.body);
+          touched.insert(contact.body);
         }
       }
-      is_clear = bodies.empty();
-      for (const contact::BodyId body : bodies) {
+      is_clear = touched.empty();
+      for (const contact::BodyId body : touched) {
+        if (input_.stop.stop_requested()) {
+          return;
+        }
         Examine(occurrence.id, OccurrenceId(body.index()));
       }
     }
@@ -234,11 +241,12 @@ std::vector<std::uint32_t> OverlapSearch::Widen(OccurrenceId own, OccurrenceId o
 }
 
 DrawnOverlap& OverlapSearch::EntryOf(OccurrenceId a, OccurrenceId b) {
-  const auto found = std::find_if(overlaps_.begin(), overlaps_.end(),
-                                  [&](const DrawnOverlap& o) { return o.Joins(a, b); });
-  if (found != overlaps_.end()) {
-    return *found;
+  const auto [entry, is_new] = entries_.try_emplace(std::minmax(a, b), overlaps_.size());
+  if (!is_new) {
+    return overlaps_[entry->second];
   }
+  entries_of_[a].push_back(overlaps_.size());
+  entries_of_[b].push_back(overlaps_.size());
   DrawnOverlap overlap;
   overlap.a = a;
   overlap.b = b;
@@ -253,6 +261,9 @@ void OverlapSearch::Relieve() {
   for (int round = 0; round < kRounds; ++round) {
     std::set<OccurrenceId> parts;
     for (const product::Occurrence& occurrence : input_.product->occurrences) {
+      if (input_.stop.stop_requested()) {
+        return;
+      }
       const std::vector<contact::IgnoredPair> ignored = ignored_of_(occurrence.id);
       const std::vector<contact::BodyId> examined = ListExamined(occurrence.id);
       contact::QueryOptions query;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -19,7 +21,7 @@ class OverlapSearch {
   using IgnoredOf = std::function<std::vector<contact::IgnoredPair>(product::OccurrenceId)>;
 
   /** @param input  All its parts are present. @param reliefs  Get what gives way.
-   All outlive this object. */
+   All outlive this object. SequenceInput::stop ends the search early. */
   OverlapSearch(const SequenceInput& input, IgnoredOf ignored_of, FaceReliefs* reliefs)
       : input_(input), ignored_of_(std::move(ignored_of)), reliefs_(*reliefs) {}
 
@@ -64,6 +66,8 @@ class OverlapSearch {
   IgnoredOf ignored_of_;
   FaceReliefs& reliefs_;
   std::vector<DrawnOverlap> overlaps_;
+  std::map<std::pair<product::OccurrenceId, product::OccurrenceId>, std::size_t> entries_;
+  std::map<product::OccurrenceId, std::vector<std::size_t>> entries_of_;  // In their order.
   contact::QueryWorkspace workspace_;
 };
 

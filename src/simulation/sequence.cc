@@ -23,7 +23,7 @@ class Planner {
       : input_(input),
         product_(*input.product),
         extraction_(input, nullptr),
-        neighbours_(FindNeighbours(product_, *input.scene, input.absent)) {}
+        neighbours_(FindNeighbours(product_, *input.scene, input.absent, input.stop)) {}
 
   Sequence Plan();
 

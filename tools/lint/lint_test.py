@@ -15,6 +15,7 @@ import doors  # noqa: E402
 import layers  # noqa: E402
 import openings  # noqa: E402
 import pages  # noqa: E402
+import part_loops  # noqa: E402
 import walkthroughs  # noqa: E402
 import rt_symbols  # noqa: E402
 import tutorials  # noqa: E402
@@ -105,6 +106,52 @@ class Doors(unittest.TestCase):
             found = list(doors.find_calls(pathlib.Path(folder)))
             self.assertEqual(len(found), 1)
             self.assertTrue(found[0].startswith("src/cad/a.cc:2: "))
+
+
+class PartLoops(unittest.TestCase):
+    def nested(self, text):
+        return list(part_loops.find_nested(text))
+
+    def test_loop_over_parts_in_another_one_is_caught_with_its_line(self):
+        text = "for (const Part& a : product.parts) {\n  Use(a);\n  for (const Part& b : product.parts) {\n    Use(b);\n  }\n}\n"
+        self.assertEqual(self.nested(text), [(3, "product.parts")])
+
+    def test_loops_by_index_also_to_a_count_are_caught(self):
+        text = "for (std::size_t i = 0; i < boxes.size(); ++i)\n  for (std::size_t k = i + 1; k < boxes.size(); ++k) F(i, k);\n"
+        self.assertEqual(self.nested(text), [(2, "boxes")])
+        text = (
+            "const std::size_t count = product.occurrences.size();\n"
+            "for (std::size_t i = 0; i < count && MayGoOn(watch); ++i) {\n"
+            "  for (std::size_t k = i + 1; k < count; ++k) {\n  }\n}\n"
+        )
+        self.assertEqual(self.nested(text), [(3, "count")])
+
+    def test_algorithms_over_parts_are_loops(self):
+        text = "for (const Body& a : bodies_) {\n  n += std::any_of(bodies_.begin(), bodies_.end(), f);\n}\n"
+        self.assertEqual(self.nested(text), [(2, "bodies_")])
+        text = "std::any_of(parts.begin(), parts.end(), [&](Id a) {\n  for (Id b : others.parts) {\n  }\n});\n"
+        self.assertEqual(self.nested(text), [(2, "others.parts")])
+
+    def test_what_follows_or_belongs_to_an_element_passes(self):
+        text = "for (const Part& a : parts) {\n}\nfor (const Part& b : parts) {\n}\n"
+        self.assertEqual(self.nested(text), [])
+        text = "for (const Node& node : product.subassemblies) {\n  for (const Id id : node.occurrences) {\n  }\n}\n"
+        self.assertEqual(self.nested(text), [])
+        text = "for (auto& [pair, joint] : joints) {\n  for (const Id id : joint.mates) {\n  }\n}\n"
+        self.assertEqual(self.nested(text), [])
+
+    def test_comments_and_other_lists_pass(self):
+        text = "for (const Part& a : parts) {\n  // for (const Part& b : parts) {}\n  for (const Face& f : a.faces) {\n  }\n}\n"
+        self.assertEqual(self.nested(text), [])
+
+    def test_allowed_loop_passes_and_an_entry_without_one_is_caught(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "src/mates").mkdir(parents=True)
+            (root / "src/mates/a.cc").write_text("for (Id a : parts) {\n  for (Id b : parts) {\n  }\n}\n")
+            self.assertEqual(len(part_loops.check(root, {})), 1)
+            self.assertEqual(part_loops.check(root, {("mates/a.cc", "parts"): "few"}), [])
+            self.assertEqual(len(part_loops.check(root, {("mates/a.cc", "parts"): "few", ("mates/b.cc", "parts"): "gone"})), 1)
 
 
 class Constants(unittest.TestCase):

@@ -13,6 +13,7 @@
 #include "app/output/report_failure.h"
 #include "assembly/run_disassembly.h"
 #include "base/clock.h"
+#include "base/crash_note.h"
 
 namespace hvas::app {
 namespace {
@@ -32,6 +33,7 @@ int RunDisassemble(const DisassembleOptions& options) {
   if (IsShown(options)) {
     progress = [](double fraction) { ShowProgress("order of disassembly", fraction); };
   }
+  NoteStage("order of disassembly");
   const auto plan = assembly::PlanDisassembly(**model, options.part, progress);
   if (progress) {
     progress(1);  // A plan for one part ends before all parts were looked at.

@@ -17,6 +17,7 @@
 
 #include "app/assembly/path_clearance.h"
 #include "app/assembly/poses.h"
+#include "app/command_watch.h"
 #include "app/output/json_flag.h"
 #include "app/output/new_file.h"
 #include "app/output/progress.h"
@@ -24,6 +25,7 @@
 #include "app/product/load_product.h"
 #include "app/recording/recorded_path.h"
 #include "base/atomic_file.h"
+#include "base/crash_note.h"
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "product/wall.h"
@@ -152,6 +154,8 @@ Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& 
   sweep::SweepOptions sweeping;
   sweeping.resolution = units::FromMm(options.resolution_mm);
   sweeping.thinnest_wall = thinnest_wall.value_or(0);
+  sweeping.stop = CommandWatch::Get().stop();
+  NoteStage("sweep");
   if (!options.load.is_quiet && IsWatched()) {
     sweeping.progress = [](double fraction) { ShowProgress("sweep", fraction); };
   }
@@ -257,6 +261,7 @@ Result<void> WritePath(const PathOptions& options) {
   if (!product) {
     return Unexpected(product.error());
   }
+  CommandWatch::Get().AllowLongWork();
   const auto id = mates::FindOccurrence(*product, options.part);
   if (!id) {
     return Unexpected(id.error());

@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "app/command_watch.h"
 #include "app/output/progress.h"
 #include "app/output/text_table.h"
 #include "assembly/prepare_model.h"
+#include "base/crash_note.h"
 #include "base/units.h"
 #include "simulation/shapes.h"
 #include "sweep/clearance.h"
@@ -42,9 +44,11 @@ Result<Json> DescribeClearances(const LoadOptions& load, const Product& product,
   const auto cache = assembly::MakeShapeCache(CacheDirectory(load));
   simulation::ShapesControl control;
   control.cache = cache.get();
+  control.shape.stop = CommandWatch::Get().stop();
   if (is_watched) {
     control.progress = [](double fraction) { ShowProgress("contact shapes", fraction); };
   }
+  NoteStage("contact shapes");
   const auto shapes = simulation::BuildShapes(product, control);
   if (!shapes) {
     return Unexpected(shapes.error());
@@ -63,6 +67,8 @@ Result<Json> DescribeClearances(const LoadOptions& load, const Product& product,
   const contact::Shape& shape = *shape_of(id);
   const sweep::Path fine = sweep::Resample(path, shape.box_B(), kStep);
   sweep::ClearanceOptions options;
+  NoteStage("clearances");
+  options.stop = CommandWatch::Get().stop();
   if (is_watched) {
     options.progress = [](double fraction) { ShowProgress("clearances", fraction); };
   }

@@ -47,11 +47,7 @@ assembly::PlanOptions MakePlanOptions(const PlanCommandOptions& options,
     plan.most_orders = 1;
   }
   plan.stop = stop;
-  if (IsShown(options)) {
-    plan.progress = [](const std::string& stage, double fraction) {
-      ShowProgress(stage, fraction);
-    };
-  }
+  plan.progress = MakeProgress(!IsShown(options));
   return plan;
 }
 

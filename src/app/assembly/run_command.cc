@@ -13,6 +13,7 @@
 #include "app/assembly/plan_file.h"
 #include "app/assembly/rendering_options.h"
 #include "app/assembly/run_report.h"
+#include "app/command_watch.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
@@ -64,6 +65,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
     }
     prepare.steps = std::move(*steps);
   }
+  CommandWatch::Get().AllowLongWork();
   prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   prepare.stop = stop;
   prepare.progress = note;
@@ -132,7 +134,8 @@ Result<std::shared_ptr<const Model>> PrepareRun(const RunCommandOptions& options
 }
 
 int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress& progress,
-                     const Error& error) {
+                     const Error& cause) {
+  const Error error = CommandWatch::Get().Translate(cause);
   const bool is_ended =
       error.code == ErrorCode::kCancelled || error.code == ErrorCode::kOutOfResource;
   if (options.is_json && is_ended) {
@@ -155,6 +158,10 @@ assembly::RunOptions MakeRunOptions(const RunCommandOptions& options,
                                     const TurnWords& words) {
   assembly::RunOptions run = options.run;
   run.devices = {options.device};
+  if (run.is_realtime || !options.device.empty()) {
+    CommandWatch::Get().End();
+  }
+  NoteStage(words.run);
   if (IsShown(options)) {
     run.on_begin = ShowNotes;
     run.on_part = [model, words, start_ns = MonotonicNs()](const auto& progress,
@@ -200,6 +207,7 @@ std::vector<simulation::GapReason> ExplainLeftOut(const Model& model, double tim
   assembly::ExplainGapsOptions options;
   options.time = std::chrono::duration<double>(time_s);
   options.stop = stop;
+  NoteStage(kStage);
   if (is_shown) {
     options.progress = [](double fraction) { ShowProgress(kStage, fraction); };
   }

@@ -47,6 +47,15 @@ void ShowProgress(std::string_view stage, double fraction) {
   std::fflush(stderr);
 }
 
+std::function<void(std::string_view stage, double fraction)> MakeProgress(bool is_quiet) {
+  return [is_shown = !is_quiet && IsWatched()](std::string_view stage, double fraction) {
+    NoteStage(fraction < 1 ? stage : "");
+    if (is_shown) {
+      ShowProgress(stage, fraction);
+    }
+  };
+}
+
 Busy::Busy(std::string stage) : stage_(std::move(stage)) {
   if (IsWatched()) {
     thread_ = std::thread([this] { Run(); });

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_watch.h"
 #include "app/output/terminal.h"
 
 namespace hvas::app {
@@ -17,7 +18,7 @@ void PrintError(const Error& error) {
 }  // namespace
 
 int ReportFailure(const Error& error) {
-  PrintError(error);
+  PrintError(CommandWatch::Get().Translate(error));
   return 1;
 }
 

@@ -15,6 +15,7 @@
 #include "app/product/product_json.h"
 #include "app/product/product_text.h"
 #include "base/atomic_file.h"
+#include "base/crash_note.h"
 #include "base/parse_json.h"
 #include "mates/relations.h"
 #include "mates/side_file.h"
@@ -76,15 +77,25 @@ Result<void> Inspect(const InspectOptions& options) {
   if (!selection) {
     return Unexpected(selection.error());
   }
+  WorkWatch watch = MakeWorkWatch(options.load);
   if (selection->Has(Section::kRelations)) {
-    product->relations = mates::ListRelations(*product, &diagnostics);
+    NoteStage("relations of parts");
+    product->relations = mates::ListRelations(*product, &diagnostics, &watch);
+  }
+  nlohmann::ordered_json json;
+  if (options.is_json) {
+    json = ToJson(*product, diagnostics, *selection, &watch);
+  } else {
+    PrintText(*product, diagnostics, *selection, options.is_all, &watch);
+  }
+  if (!watch.MayGoOn()) {
+    return Unexpected(watch.Explain("comparing the parts as drawn", product->source));
   }
   if (options.is_json) {
+    NoteStage("output");
     // Names that are no UTF-8 in the file must not cost the whole answer.
-    fmt::print("{}\n", ToJson(*product, diagnostics, *selection)
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  } else {
-    PrintText(*product, diagnostics, *selection, options.is_all);
+    fmt::print("{}\n",
+               json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }
   return {};
 }

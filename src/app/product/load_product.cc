@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/command_watch.h"
 #include "app/output/progress.h"
 #include "base/file_cache.h"
 #include "base/units.h"
@@ -45,7 +46,7 @@ void AddFileOptions(CLI::App* command, LoadOptions* options) {
 
 }  // namespace
 
-void AddLoadOptions(CLI::App* command, LoadOptions* options) {
+void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited) {
   command->add_flag("--strict", options->is_strict, "Treat warnings as errors");
   command->add_flag("--quiet,-q", options->is_quiet, "No progress");
   command->add_flag("!--no-cache", options->is_cache_used,
@@ -59,11 +60,21 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options) {
                       "Name or path of a part that may not give on its way although its name, its "
                       "material or its form indicates that it is flexible; all: no part that is "
                       "not under \"flexible\" in the side file; may be repeated");
-  command
-      ->add_option("--time-limit", options->limits.time,
-                   "Time limit for opening and preparing the file [s]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  const CLI::Option* time =
+      command
+          ->add_option("--time-limit", options->limits.time,
+                       limited == Limited::kCommand
+                           ? "Time limit for the command, to its last output [s]; without it, an "
+                             "hour where the product is prepared, planned or run"
+                           : "Time limit for opening a file [s]")
+          ->check(CLI::PositiveNumber)
+          ->capture_default_str();
+  if (limited == Limited::kCommand) {
+    command->parse_complete_callback([options, time] {
+      CommandWatch::Get().Begin(options->file.filename().string(), options->limits,
+                                !time->empty());
+    });
+  }
   command
       ->add_option("--memory-limit", options->limits.memory,
                    "Memory limit for opening the file, for example 8GB; default: 4GB, or three "
@@ -99,8 +110,12 @@ namespace {
 assembly::OpenOptions MakeOpenOptions(const LoadOptions& options) {
   assembly::OpenOptions open = static_cast<const assembly::OpenOptions&>(options);
   open.cache_directory = CacheDirectory(options);
-  if (open.progress == nullptr && !options.is_quiet && IsWatched()) {
-    open.progress = ShowProgress;
+  if (open.progress == nullptr) {
+    open.progress = MakeProgress(options.is_quiet);
+  }
+  open.limits = CommandWatch::Get().LimitsOr(open.limits);
+  if (!open.stop.stop_possible()) {
+    open.stop = CommandWatch::Get().stop();
   }
   return open;
 }
@@ -120,6 +135,11 @@ Result<product::Product> LoadProduct(const LoadOptions& options, Diagnostics* di
     return Unexpected(strict.error());
   }
   return product;
+}
+
+WorkWatch MakeWorkWatch(const LoadOptions& options) {
+  const CommandWatch& command = CommandWatch::Get();
+  return WorkWatch(command.LimitsOr(options.limits), command.stop());
 }
 
 Result<void> CheckStrict(const LoadOptions& options, const Diagnostics& diagnostics) {

@@ -22,9 +22,15 @@ struct LoadOptions : assembly::OpenOptions {
   bool is_cache_used{true};  ///< Keeps and takes what was read and prepared on disk.
 };
 
+/** What --time-limit and --memory-limit limit. */
+enum class Limited {
+  kCommand,  ///< All of the command (CommandWatch).
+  kOpening,  ///< Each opening of a file: people work with what is opened.
+};
+
 /** Adds --strict, --quiet, --no-cache, --unit, --encoding, --apart, --rigid, --time-limit,
  --memory-limit and --max-parts to a command. */
-void AddLoadOptions(CLI::App* command, LoadOptions* options);
+void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited = Limited::kCommand);
 
 /** Adds --fixture to a command. */
 void AddFixtureOption(CLI::App* command, LoadOptions* options);
@@ -43,6 +49,9 @@ void AddAccessoryOptions(CLI::App* command, LoadOptions* options);
  --strict it ends as CheckStrict says. */
 [[nodiscard]] Result<product::Product> LoadProduct(const LoadOptions& options,
                                                    Diagnostics* diagnostics);
+
+/** Makes a watch for work on a product that has been opened, with the limits of the command. */
+[[nodiscard]] WorkWatch MakeWorkWatch(const LoadOptions& options);
 
 /** Ends what --strict was asked of when there are warnings: prints them on stderr and fails
  (kInvalid), so that the command can end with exit status 1. To be called again after steps that

@@ -63,8 +63,9 @@ Result<Opened> Open(const MateOptions& options) {
   }
   Opened opened{*std::move(inferred), *std::move(document), {}, {}};
   opened.product = opened.inferred;
+  WorkWatch watch = MakeWorkWatch(options.load);
   Result<mates::MateChanges> changes =
-      mates::ApplySideFile(opened.document.contents(), &opened.product);
+      mates::ApplySideFile(opened.document.contents(), &opened.product, &watch);
   if (!changes) {
     return Unexpected(changes.error());
   }

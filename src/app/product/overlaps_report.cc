@@ -9,6 +9,7 @@
 
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
+#include "base/crash_note.h"
 #include "base/units.h"
 #include "mates/drawn_volumes.h"
 #include "mates/elastic_parts.h"
@@ -24,8 +25,10 @@ using product::FlexiblePart;
 using product::Product;
 using units::ToMm;
 
-std::vector<SharedVolume> ListShared(const Product& product, const Selection& selection) {
-  std::vector<SharedVolume> list = mates::ListSharedVolumes(product);
+std::vector<SharedVolume> ListShared(const Product& product, const Selection& selection,
+                                     WorkWatch* watch) {
+  NoteStage("overlaps as drawn");
+  std::vector<SharedVolume> list = mates::ListSharedVolumes(product, watch);
   std::erase_if(list, [&](const SharedVolume& shared) {
     return !selection.Has(shared.a) && !selection.Has(shared.b);
   });
@@ -136,9 +139,9 @@ std::vector<FlexiblePart> ListFlexible(const Product& product, const Selection& 
 
 }  // namespace
 
-void AddOverlaps(const Product& product, const Selection& selection, Json* json) {
+void AddOverlaps(const Product& product, const Selection& selection, WorkWatch* watch, Json* json) {
   Json& overlaps = (*json)["overlaps"] = Json::array();
-  for (const SharedVolume& shared : ListShared(product, selection)) {
+  for (const SharedVolume& shared : ListShared(product, selection, watch)) {
     overlaps.push_back({{"a", shared.a.value()},
                         {"b", shared.b.value()},
                         {"depth_mm", ToMm(shared.depth)},
@@ -160,8 +163,9 @@ void AddOverlaps(const Product& product, const Selection& selection, Json* json)
   }
 }
 
-void PrintOverlaps(const Product& product, const Selection& selection, bool is_all) {
-  const std::vector<SharedVolume> shared = ListShared(product, selection);
+void PrintOverlaps(const Product& product, const Selection& selection, bool is_all,
+                   WorkWatch* watch) {
+  const std::vector<SharedVolume> shared = ListShared(product, selection, watch);
   if (!shared.empty()) {
     PrintShared(product, shared, is_all);
   }

@@ -437,7 +437,8 @@ ToleranceCounts CountTolerances(const Product& product) {
   return counts;
 }
 
-Json ToJson(const Product& product, const Diagnostics& diagnostics, const Selection& selection) {
+Json ToJson(const Product& product, const Diagnostics& diagnostics, const Selection& selection,
+            WorkWatch* watch) {
   Json json{{"format", kInspectFormat}, {"summary", Summarise(product, diagnostics)}};
   if (selection.Has(Section::kParts)) {
     json["parts"] = ListSelected(product.parts, selection, PartToJson);
@@ -471,7 +472,7 @@ Json ToJson(const Product& product, const Diagnostics& diagnostics, const Select
     AddJointForms(product, selection, &json);
   }
   if (selection.Has(Section::kOverlaps)) {
-    AddOverlaps(product, selection, &json);
+    AddOverlaps(product, selection, watch, &json);
   }
   if (selection.Has(Section::kTolerances)) {
     const auto without_id = [](auto convert) {

@@ -8,6 +8,7 @@
 
 #include "app/product/selection.h"
 #include "base/diagnostics.h"
+#include "base/work_watch.h"
 #include "product/product.h"
 
 namespace hvas::app {
@@ -27,10 +28,11 @@ struct ToleranceCounts {
 [[nodiscard]] nlohmann::ordered_json DiagnosticsToJson(const Diagnostics& diagnostics);
 
 /** The product as one JSON object: format, summary (always of the whole product) and the sections
- that are selected. Keys carry their unit; keys keep this order. */
+ that are selected. Keys carry their unit; keys keep this order.
+ @param watch  What it ends is incomplete. */
 [[nodiscard]] nlohmann::ordered_json ToJson(const product::Product& product,
                                             const Diagnostics& diagnostics,
-                                            const Selection& selection);
+                                            const Selection& selection, WorkWatch* watch);
 
 /** What is known of a mate beyond its fit; the keys are those of the side file. */
 [[nodiscard]] nlohmann::ordered_json ConditionsToJson(const product::Mate& mate);

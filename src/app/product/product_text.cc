@@ -545,7 +545,7 @@ void PrintMate(const Product& product, const Mate& mate, bool with_evidence) {
 }
 
 void PrintText(const Product& product, const Diagnostics& diagnostics, const Selection& selection,
-               bool is_all) {
+               bool is_all, WorkWatch* watch) {
   if (selection.Has(Section::kTree)) {
     TreePrinter(product, selection, is_all).Print();
   }
@@ -569,7 +569,7 @@ void PrintText(const Product& product, const Diagnostics& diagnostics, const Sel
     PrintJointForms(product, selection, is_all);
   }
   if (selection.Has(Section::kOverlaps)) {
-    PrintOverlaps(product, selection, is_all);
+    PrintOverlaps(product, selection, is_all, watch);
   }
   if (selection.Has(Section::kTolerances)) {
     PrintTolerances(product, selection, is_all);

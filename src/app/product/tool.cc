@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/command_watch.h"
 #include "app/output/json_flag.h"
 #include "app/output/report_failure.h"
 #include "app/output/round_json.h"
@@ -21,6 +22,7 @@
 #include "app/shipped_files.h"
 #include "assembly/prepare_model.h"
 #include "base/atomic_file.h"
+#include "base/crash_note.h"
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "mates/fasteners.h"
@@ -244,6 +246,9 @@ Result<Reach> FindReach(const ToolOptions& options, const Product& product,
   const auto cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   simulation::ShapesControl control;
   control.cache = cache.get();
+  control.shape.stop = CommandWatch::Get().stop();
+  CommandWatch::Get().AllowLongWork();
+  NoteStage("contact shapes");
   const auto shapes = simulation::BuildShapes(product, control);
   const auto tool_shapes = simulation::BuildShapes(*tool, control);
   if (!shapes || !tool_shapes) {
@@ -258,6 +263,7 @@ Result<Reach> FindReach(const ToolOptions& options, const Product& product,
   query.fastener = contact::BodyId(fastener.id.index());
   query.tool = tool_shapes->front().get();
   query.tool_part = &part;
+  NoteStage("reach of the tool");
   for (const simulation::ToolMate& mate : mates) {
     result.ends.push_back({mate, simulation::CalcToolReach(
                                      query, mate, product.occurrences[fastener.id.index()].X_WB)});

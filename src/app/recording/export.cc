@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly/poses.h"
+#include "app/command_watch.h"
 #include "app/output/new_file.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
@@ -24,6 +25,7 @@
 #include "assembly/open_product.h"
 #include "assembly/prepare_model.h"
 #include "base/atomic_file.h"
+#include "base/crash_note.h"
 #include "cad/export_step.h"
 #include "cad/glb.h"
 #include "cad/input_file.h"
@@ -101,11 +103,12 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product,
                 product.source, "export it as .glb, or start from the CAD system's own STEP file");
   }
   cad::ImportControl control;
-  control.limits.time = options.load.limits.time;
-  control.limits.memory = options.load.limits.memory;
-  if (!options.load.is_quiet && IsWatched()) {
-    control.progress = ShowProgress;
-  }
+  const WorkLimits limits = CommandWatch::Get().LimitsOr(options.load.limits);
+  control.limits.time = limits.time;
+  control.limits.begin_ns = limits.begin_ns;
+  control.limits.memory = limits.memory;
+  control.stop = CommandWatch::Get().stop();
+  control.progress = MakeProgress(options.load.is_quiet);
   const Result<cad::MappedFile> step = cad::ExportStep(
       options.load.file, assembly::MakeImportOptions(options.load), control, motions);
   if (!step) {
@@ -119,7 +122,11 @@ Result<void> WriteStep(const ExportOptions& options, const Product& product,
 Result<void> WriteJson(const ExportOptions& options, const Product& product,
                        const Diagnostics& diagnostics) {
   const Selection everything(product);
-  nlohmann::ordered_json json = ToJson(product, diagnostics, everything);
+  WorkWatch watch = MakeWorkWatch(options.load);
+  nlohmann::ordered_json json = ToJson(product, diagnostics, everything, &watch);
+  if (!watch.MayGoOn()) {
+    return Unexpected(watch.Explain("comparing the parts as drawn", product.source));
+  }
   if (options.has_meshes) {
     AddMeshes(product, everything, options.is_fine, &json);
   }
@@ -171,9 +178,9 @@ Result<void> WritePlannedWays(const ExportOptions& options, const Product& produ
   constexpr double kTicks = 1000;  // [Hz], as those of a record.
   assembly::PrepareOptions prepare;
   prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
-  if (!options.load.is_quiet && IsWatched()) {
-    prepare.progress = ShowProgress;
-  }
+  prepare.progress = MakeProgress(options.load.is_quiet);
+  prepare.stop = CommandWatch::Get().stop();
+  CommandWatch::Get().AllowLongWork();
   Diagnostics diagnostics;
   const auto model = assembly::PrepareModel(product, prepare, &diagnostics);
   if (!model) {
@@ -190,6 +197,7 @@ Result<void> ExportProduct(const ExportOptions& options, const std::string& form
   if (!product) {
     return Unexpected(product.error());
   }
+  NoteStage("export");
   cad::PartMotions motions;
   if (!options.poses.empty()) {
     auto moved = ApplyPoses(options.poses, &*product);

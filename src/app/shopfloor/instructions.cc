@@ -17,6 +17,7 @@
 #include "app/output/report_failure.h"
 #include "app/recording/page_file.h"
 #include "base/atomic_file.h"
+#include "base/crash_note.h"
 #include "base/regular_file.h"
 #include "evidence/summary.h"
 #include "shopfloor/instruction_page.h"
@@ -117,6 +118,7 @@ Result<std::string> MakePage(const InstructionsCommand& options, const simulatio
     page.viewer =
         shopfloor::MakeViewerElement(model, plan, *animation, viewer->plain, options.language);
   }
+  NoteStage("pictures");
   if (IsShown(options)) {
     page.progress = [](double fraction) { ShowProgress("pictures", fraction); };
   }

@@ -207,7 +207,7 @@ void AddRun(CLI::App* group, int* status) {
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   AddJsonFlag(command, &options->is_json, "study_summary");
-  AddLoadOptions(command, &options->load);
+  AddLoadOptions(command, &options->load, Limited::kOpening);
   command->footer(
       "To run a study with people, use the studio: `hvas studio --study PROTOCOL --participant "
       "P01`.\n"

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/clock.h"
+
 namespace hvas {
 namespace {
 
@@ -56,6 +58,29 @@ TEST(WorkWatchTest, StopThatIsAskedForEndsTheWork) {
   while (watch.MayGoOn()) {
   }
   EXPECT_EQ(watch.Explain("finding the mates", "rig.step").code, ErrorCode::kCancelled);
+}
+
+TEST(WorkWatchTest, TimeIsCountedFromWhereTheWorkBegan) {
+  WorkLimits limits;
+  limits.begin_ns = MonotonicNs() - std::int64_t{100} * 1'000'000'000;
+  limits.time = 99;
+  EXPECT_FALSE(WorkWatch(limits).MayGoOn());
+  limits.time = 1000;
+  EXPECT_TRUE(WorkWatch(limits).MayGoOn());
+}
+
+TEST(WorkWatchTest, PairsBeyondTheLimitEndTheWorkAndAreNamed) {
+  WorkLimits limits;
+  limits.pairs = 3;
+  WorkWatch watch(limits);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(watch.MayVisitPair());
+  }
+  EXPECT_FALSE(watch.MayVisitPair());
+  EXPECT_FALSE(watch.MayGoOn());
+  EXPECT_EQ(watch.Explain("finding the mates", "rig.step").ToString(),
+            "rig.step: finding the mates had more than 3 pairs of parts to look at, which is the "
+            "limit (export the product in parts)");
 }
 
 TEST(WorkWatchTest, DefaultMemoryIsThatOfAUsualMachine) {

@@ -50,6 +50,7 @@
 #include "cad/brep/occt_session.h"
 #include "cad/brep/sew_faces.h"
 #include "cad/iges/iges_text.h"
+#include "cad/length_unit.h"
 #include "cad/scene/placed_parts.h"
 #include "cad/step/text_encoding.h"
 
@@ -358,7 +359,8 @@ Result<void> DocumentBuilder::Build(const std::vector<TopoDS_Shape>& roots, std:
     return Fail(ErrorCode::kUnreadable, "the IGES file has no solids, surfaces or curves", file_,
                 "export solids or trimmed surfaces");
   }
-  if (const auto checked = CheckPlaced(CountPlaced(uses_, {NumberOf(root)}), max_parts, file_);
+  if (const auto checked = CheckTree(ExamineTree(uses_, {NumberOf(root)}), max_parts, file_,
+                                     "entity");
       !checked) {
     return checked;
   }
@@ -445,6 +447,11 @@ Result<CadDocument> ReadIgesDocument(const std::filesystem::path& file,
                 "export the file again from the CAD system");
   }
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
+  if (const auto checked = CheckLengthUnit(units::FromMm(model->GlobalSection().UnitValue()), name,
+                                           "the global section");
+      !checked) {
+    return Unexpected(checked.error());
+  }
   if (options.length_unit) {
     if (const auto set = SetLengthUnit(*options.length_unit, name, model); !set) {
       return Unexpected(set.error());

@@ -69,9 +69,9 @@ IFSelect_ReturnStatus Parse(const std::filesystem::path& file, const StepText& t
   return status;
 }
 
-/** How many parts and subassemblies the file places. To be known before the transfer, which goes
- through all of them. */
-double CountPlacedProducts(const STEPCAFControl_Reader& reader) {
+/** The parts and subassemblies that the file places, by the numbers of their definitions in the file.
+ To be known before the transfer, which goes through all of them. */
+PlacedTree ExamineProducts(const STEPCAFControl_Reader& reader) {
   const Handle(StepData_StepModel) model = reader.Reader().StepModel();
   Uses uses;
   std::set<std::uint64_t> used;
@@ -80,7 +80,8 @@ double CountPlacedProducts(const STEPCAFControl_Reader& reader) {
     if (!usage.IsNull() && !usage->RelatingProductDefinition().IsNull() &&
         !usage->RelatedProductDefinition().IsNull()) {
       const auto number = [&model](const Handle(Standard_Transient) & entity) {
-        return static_cast<std::uint64_t>(model->Number(entity));
+        const int label = model->IdentLabel(entity);
+        return static_cast<std::uint64_t>(label > 0 ? label : model->Number(entity));
       };
       uses[number(usage->RelatingProductDefinition())].push_back(
           number(usage->RelatedProductDefinition()));
@@ -93,7 +94,7 @@ double CountPlacedProducts(const STEPCAFControl_Reader& reader) {
       roots.push_back(user);
     }
   }
-  return CountPlaced(uses, roots);
+  return ExamineTree(uses, roots);
 }
 
 void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
@@ -289,7 +290,8 @@ Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, const St
     return Fail(ErrorCode::kUnreadable, "the STEP file is damaged", name,
                 "export the file again from the CAD system");
   }
-  if (const auto checked = CheckPlaced(CountPlacedProducts(reader), options.max_parts, name);
+  if (const auto checked =
+          CheckTree(ExamineProducts(reader), options.max_parts, name, "product definition #");
       !checked) {
     return Unexpected(checked.error());
   }

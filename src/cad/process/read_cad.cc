@@ -25,6 +25,7 @@
 #include "cad/scene/mesh_folder_document.h"
 #include "cad/scene/mesh_format.h"
 #include "cad/step/identities.h"
+#include "cad/step/step_measure.h"
 #include "cad/step/tolerances.h"
 #include "cad/triangles/tessellated.h"
 
@@ -104,6 +105,9 @@ bool HasCurvesOnly(const Diagnostics& diagnostics) {
 Result<Product> ReadStep(const std::filesystem::path& file, const ImportOptions& options,
                          const ReadWatch& watch, Diagnostics* diagnostics) {
   StepText text(ReadStepFile(file, options, diagnostics));
+  if (const auto checked = CheckLengthUnits(text, file.filename().string()); !checked) {
+    return Unexpected(checked.error());
+  }
   OverrideLengthUnit(options, &text);
   Diagnostics of_solids;
   Result<Product> solids = ReadSolids(file, text, options, watch, &of_solids);

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/parse_json.h"
-#include "cad/scene/placed_parts.h"
 
 namespace hvas::cad {
 namespace {
@@ -51,18 +50,19 @@ std::vector<std::uint64_t> NumbersOf(const Json& object, const char* key) {
 
 }  // namespace
 
-double CountGltfNodes(std::span<const std::byte> bytes) {
+PlacedTree ExamineGltfNodes(std::span<const std::byte> bytes) {
   const Json json = ParseJson<Json>(FindDocument(bytes));
   Uses uses;
   std::uint64_t number = 0;
   for (const Json& node : ListOf(json, "nodes")) {
     uses[number++] = NumbersOf(node, "children");
   }
-  double count = 0;
+  std::vector<std::uint64_t> roots;
   for (const Json& scene : ListOf(json, "scenes")) {
-    count += CountPlaced(uses, NumbersOf(scene, "nodes"));
+    const std::vector<std::uint64_t> own = NumbersOf(scene, "nodes");
+    roots.insert(roots.end(), own.begin(), own.end());
   }
-  return count;
+  return ExamineTree(uses, roots);
 }
 
 }  // namespace hvas::cad

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <span>
 
+#include "cad/scene/placed_parts.h"
+
 namespace hvas::cad {
 
-/** How many nodes the scenes of a glTF 2 or GLB file have, those that several nodes hold counted as
- often as they are there. Takes any bytes; 0 where they hold no nodes. */
-[[nodiscard]] double CountGltfNodes(std::span<const std::byte> bytes);
+/** The nodes of the scenes of a glTF 2 or GLB file, those that several nodes hold counted as often
+ as they are there. Takes any bytes; nothing where they hold no nodes. */
+[[nodiscard]] PlacedTree ExamineGltfNodes(std::span<const std::byte> bytes);
 
 }  // namespace hvas::cad

@@ -55,7 +55,8 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
                 "export the file again");
   }
   const Model3mf model = ParseModel3mf(*xml);
-  if (const auto checked = CheckPlaced(model.placed, options.max_parts, name); !checked) {
+  if (const auto checked = CheckTree(model.placed, options.max_parts, name, "object");
+      !checked) {
     return checked;
   }
   conventions->length_unit = model.length_unit;
@@ -80,8 +81,8 @@ Result<SceneConventions> FindConventions(const std::filesystem::path& file, Mesh
     case MeshFormat::kGltf:
       conventions.is_y_up = true;
       if (const auto bytes = MappedFile::Open(file)) {
-        checked = CheckPlaced(CountGltfNodes(bytes->bytes()), options.max_parts,
-                              file.filename().string());
+        checked = CheckTree(ExamineGltfNodes(bytes->bytes()), options.max_parts,
+                            file.filename().string(), "node");
       }
       break;
     case MeshFormat::k3mf:

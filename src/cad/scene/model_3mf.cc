@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "cad/scene/placed_parts.h"
 #include "cad/step/step_text.h"
 
 namespace hvas::cad {
@@ -131,7 +130,7 @@ Model3mf ParseModel3mf(std::string_view xml) {
       }
     }
   }
-  model.placed = CountPlaced(uses, items);
+  model.placed = ExamineTree(uses, items);
   return model;
 }
 

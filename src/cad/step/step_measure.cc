@@ -2,10 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
+#include "cad/length_unit.h"
 
 namespace hvas::cad {
 namespace {
@@ -55,8 +59,9 @@ std::optional<Raw> ReadRaw(const StepText& text, std::uint64_t id) {
   return has_number ? std::optional(raw) : std::nullopt;
 }
 
+/** NaN for a prefix that ISO 10303-41 does not have. */
 double PrefixScale(std::string_view prefix) {
-  static constexpr std::array<std::pair<std::string_view, double>, 11> kPrefixes{{{"GIGA", 1e9},
+  static constexpr std::array<std::pair<std::string_view, double>, 16> kPrefixes{{{"EXA", 1e18}, {"PETA", 1e15}, {"TERA", 1e12}, {"GIGA", 1e9},
                                                                                   {"MEGA", 1e6},
                                                                                   {"KILO", 1e3},
                                                                                   {"HECTO", 1e2},
@@ -66,13 +71,13 @@ double PrefixScale(std::string_view prefix) {
                                                                                   {"MILLI", 1e-3},
                                                                                   {"MICRO", 1e-6},
                                                                                   {"NANO", 1e-9},
-                                                                                  {"PICO", 1e-12}}};
+                                                                                  {"PICO", 1e-12}, {"FEMTO", 1e-15}, {"ATTO", 1e-18}}};
   for (const auto& [name, scale] : kPrefixes) {
     if (prefix == name) {
       return scale;
     }
   }
-  return 1;
+  return prefix.empty() ? 1 : std::numeric_limits<double>::quiet_NaN();
 }
 
 Unit MakeSiUnit(const StepText& text, const StepRecord& record) {
@@ -90,9 +95,10 @@ Unit MakeSiUnit(const StepText& text, const StepRecord& record) {
   return {scale * PrefixScale(prefix), quantity};
 }
 
+/** Nothing where it cannot be read; without a number where units are defined by one another. */
 std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) {
   if (depth > kMaxUnitDepth) {
-    return std::nullopt;
+    return Unit{std::numeric_limits<double>::quiet_NaN(), Quantity::kOther};
   }
   for (const StepRecord& record : text.Find(id)) {
     if (record.name == "SI_UNIT") {
@@ -102,7 +108,7 @@ std::optional<Unit> ReadUnit(const StepText& text, std::uint64_t id, int depth) 
     if (is_converted && record.values.size() > 1) {
       const auto raw = ReadRaw(text, record.values.back().reference);
       const auto base = raw ? ReadUnit(text, raw->unit, depth + 1) : std::nullopt;
-      if (base && std::isfinite(raw->number * base->scale)) {
+      if (base) {
         return Unit{raw->number * base->scale, base->quantity};
       }
       return std::nullopt;  // Looks at no second one: many in each step would take for ever.
@@ -120,7 +126,7 @@ std::optional<Unit> ReadAssignedUnit(const StepText& text, std::uint64_t context
     }
     for (const StepValue& value : record.values.back().items) {
       const auto unit = ReadUnit(text, value.reference, 0);
-      if (unit && unit->quantity == quantity) {
+      if (unit && unit->quantity == quantity && std::isfinite(unit->scale)) {
         return unit;
       }
     }
@@ -148,6 +154,24 @@ Unit MakeDefaultUnit(const StepText& text, Quantity quantity) {
 
 }  // namespace
 
+Result<void> CheckLengthUnits(const StepText& text, const std::string& file) {
+  for (const StepText::Statement& statement : text.statements()) {
+    if (statement.body.find("LENGTH_UNIT") == std::string_view::npos) {
+      continue;
+    }
+    const auto unit = ReadUnit(text, statement.id, 0);
+    if (!unit) {
+      continue;
+    }
+    auto checked = CheckLengthUnit(unit->scale / text.length_scale(), file,
+                                   fmt::format("entity #{}", statement.id));
+    if (!checked) {
+      return checked;
+    }
+  }
+  return {};
+}
+
 double FindLengthUnit(const StepText& text) {
   for (const StepText::Statement& statement : text.statements()) {
     if (statement.body.find("GLOBAL_UNIT_ASSIGNED_CONTEXT") == std::string_view::npos) {
@@ -173,7 +197,7 @@ std::optional<StepMeasure> ReadMeasure(const StepText& text, std::uint64_t id,
     return std::nullopt;
   }
   auto unit = ReadUnit(text, raw->unit, 0);
-  if (!unit) {
+  if (!unit || !std::isfinite(unit->scale)) {
     unit = ReadContextUnit(text, representation, raw->quantity);
   }
   if (!unit) {

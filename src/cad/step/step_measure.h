@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "base/result.h"
 #include "cad/step/step_text.h"
 
 namespace hvas::cad {
@@ -27,6 +28,10 @@ struct StepMeasure {
  where it names none. StepText::length_scale() is applied. */
 [[nodiscard]] double ReadUnitOf(const StepText& text, std::uint64_t representation,
                                 Quantity quantity);
+
+/** Checks all units of length of a text before anything is converted by them. Errors: those of
+ CheckLengthUnit, naming the entity. @param file  Its name. */
+[[nodiscard]] Result<void> CheckLengthUnits(const StepText& text, const std::string& file);
 
 /** The unit of length of the first context of the text that has one [m], as it is written; a
  millimetre where there is none. */

@@ -241,6 +241,35 @@ std::string MakeDoubling3mf(std::size_t levels) {
   return Zip(Package(Model(objects, fmt::format("<item objectid=\"{}\"/>", levels + 1))));
 }
 
+std::string MakeCircle3mf(bool is_built) {
+  std::string objects;
+  for (const auto& [id, used] : {std::pair(2, 3), std::pair(3, 2)}) {
+    objects += fmt::format(
+        "<object id=\"{}\"><components><component objectid=\"{}\"/></components></object>", id, used);
+  }
+  return Zip(Package(Model(objects, fmt::format("<item objectid=\"{}\"/>", is_built ? 2 : 1))));
+}
+
+std::string MakeNested3mf(std::size_t levels) {
+  std::string objects;
+  for (std::size_t i = 1; i <= levels; ++i) {
+    objects += fmt::format(
+        "<object id=\"{}\" type=\"model\"><components><component objectid=\"{}\"/></components>"
+        "</object>",
+        i + 1, i);
+  }
+  return Zip(Package(Model(objects, fmt::format("<item objectid=\"{}\"/>", levels + 1))));
+}
+
+std::string MakeRow3mf(std::size_t count, double step) {
+  std::string items;
+  for (std::size_t i = 0; i < count; ++i) {
+    items += fmt::format("<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 {:.9g} 0 0\"/>",
+                         step * static_cast<double>(i));
+  }
+  return Zip(Package(Model("", items)));
+}
+
 std::string MakeBomb3mf(std::size_t bytes) {
   std::vector<Entry> entries = Package(Model("", "<item objectid=\"1\"/>"));
   entries.push_back({"3D/Textures/bomb.png", "", bytes});
@@ -276,6 +305,10 @@ std::string MakeNestedGltf(std::size_t levels) {
   return Gltf(fmt::format("{},{}", levels, levels + 1), nodes + R"(,{"mesh":0})");
 }
 
+std::string MakeCircleGltf() {
+  return Gltf("0,1", R"({"mesh":0},{"children":[2]},{"children":[1]})");
+}
+
 std::string MakeStretchedGltf(std::size_t count) {
   std::string nodes;
   for (std::size_t i = 0; i < count; ++i) {
@@ -289,6 +322,14 @@ std::string MakeManyObjectsObj(std::size_t count) {
   std::string text = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\n";
   for (std::size_t i = 0; i < count; ++i) {
     text += fmt::format("o a{}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", i);
+  }
+  return text;
+}
+
+std::string MakeManyTrianglesObj(std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += fmt::format("o o{0}\nv {0} 0 0\nv {0} 1 0\nv {0} 0 1\nf -1 -2 -3\n", i);
   }
   return text;
 }
@@ -352,6 +393,18 @@ std::string MakeDoublingStep(const std::string& part, std::size_t levels) {
   }
   std::string text = part;
   text.insert(text.rfind("ENDSEC;"), added);
+  return text;
+}
+
+std::string MakeCircleStep(const std::string& part) {
+  std::string text = MakeDoublingStep(part, 2);
+  const auto find_usage = [&text](const std::string& name) {
+    const std::size_t at = text.find("NEXT_ASSEMBLY_USAGE_OCCURRENCE('" + name + "'");
+    return std::pair(at, References(text.substr(at, text.find(';', at) - at)));
+  };
+  const std::string second = find_usage("u2_0").second.at(0);
+  const auto [at, of_first] = find_usage("u1_0");
+  text.replace(text.find(of_first.at(1), at), of_first.at(1).size(), second);
   return text;
 }
 

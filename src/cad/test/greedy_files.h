@@ -13,6 +13,23 @@ namespace hvas::cad::testing {
 /** 3MF with a box, and `levels` objects of two components each: 2^levels boxes. */
 [[nodiscard]] std::string MakeDoubling3mf(std::size_t levels);
 
+/** 3MF with a box and two objects that are components of each other.
+ @param is_built  Whether the build has one of them; else it has the box. */
+[[nodiscard]] std::string MakeCircle3mf(bool is_built);
+
+/** 3MF with a box below `levels` objects that each are a component of the next. */
+[[nodiscard]] std::string MakeNested3mf(std::size_t levels);
+
+/** glTF with a box and two nodes that are children of each other. */
+[[nodiscard]] std::string MakeCircleGltf();
+
+/** A STEP file of one part, with two assemblies added that use each other. @param part  As OpenCASCADE
+ writes it. */
+[[nodiscard]] std::string MakeCircleStep(const std::string& part);
+
+/** 3MF with `count` boxes, `step` millimetres apart. */
+[[nodiscard]] std::string MakeRow3mf(std::size_t count, double step);
+
 /** 3MF with a box and a picture that takes so many bytes when it is unpacked. */
 [[nodiscard]] std::string MakeBomb3mf(std::size_t bytes);
 
@@ -33,6 +50,9 @@ namespace hvas::cad::testing {
 
 /** OBJ with `count` objects, each the same four triangles at one place. */
 [[nodiscard]] std::string MakeManyObjectsObj(std::size_t count);
+
+/** OBJ with `count` objects of one triangle each, side by side. */
+[[nodiscard]] std::string MakeManyTrianglesObj(std::size_t count);
 
 /** Text STL with `count` solids, each the same four triangles at one place. */
 [[nodiscard]] std::string MakeManySolidsStl(std::size_t count);

@@ -84,29 +84,40 @@ void ExpectHas(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "no \"" << part << "\" in: " << text;
 }
 
-TEST(CountPlacedTest, CountsDefinitionsAsOftenAsTheyArePlaced) {
-  EXPECT_EQ(CountPlaced({}, {}), 0);
-  EXPECT_EQ(CountPlaced({}, {5, 5}), 2);
-  EXPECT_EQ(CountPlaced({{1, {2, 2, 3}}, {2, {3}}}, {1}), 6);
+using Circle = std::vector<std::uint64_t>;
+
+TEST(PlacedTreeTest, CountsDefinitionsAsOftenAsTheyArePlaced) {
+  EXPECT_EQ(ExamineTree({}, {}).count, 0);
+  EXPECT_EQ(ExamineTree({}, {5, 5}).count, 2);
+  EXPECT_EQ(ExamineTree({{1, {2, 2, 3}}, {2, {3}}}, {1}).count, 6);
+  EXPECT_EQ(ExamineTree({{1, {2, 2, 3}}, {2, {3}}}, {1}).levels, 3U);
+  EXPECT_EQ(ExamineTree({{1, {2, 2, 3}}, {2, {3}}}, {1}).circle, Circle());
   Uses doubling;
   for (std::uint64_t i = 0; i < 50; ++i) {
     doubling[i] = {i + 1, i + 1};
   }
-  EXPECT_EQ(CountPlaced(doubling, {0}), std::pow(2, 51) - 1);
+  EXPECT_EQ(ExamineTree(doubling, {0}).count, std::pow(2, 51) - 1);
   for (std::uint64_t i = 50; i < 2000; ++i) {
     doubling[i] = {i + 1, i + 1};
   }
-  EXPECT_TRUE(std::isinf(CountPlaced(doubling, {0})));
+  EXPECT_TRUE(std::isinf(ExamineTree(doubling, {0}).count));
 }
 
-TEST(CountPlacedTest, CirclesAndLongChainsHaveAnEnd) {
-  EXPECT_EQ(CountPlaced({{1, {1}}}, {1}), 1);
-  EXPECT_EQ(CountPlaced({{1, {2}}, {2, {1}}}, {1}), 2);
+TEST(PlacedTreeTest, CirclesAreFoundAlsoWhereNoRootLeadsToThem) {
+  EXPECT_EQ(ExamineTree({{1, {1}}}, {1}).circle, Circle({1, 1}));
+  EXPECT_EQ(ExamineTree({{1, {2}}, {2, {1}}}, {1}).circle, Circle({1, 2, 1}));
+  EXPECT_EQ(ExamineTree({{5, {6}}, {1, {2}}, {2, {3}}, {3, {2}}}, {5}).circle, Circle({2, 3, 2}));
+}
+
+TEST(PlacedTreeTest, LongChainsHaveAnEnd) {
   Uses chain;
   for (std::uint64_t i = 0; i < 200'000; ++i) {
     chain[i] = {i + 1};
   }
-  EXPECT_EQ(CountPlaced(chain, {0}), 200'001);
+  EXPECT_EQ(ExamineTree(chain, {0}).count, 200'001);
+  EXPECT_EQ(ExamineTree(chain, {0}).levels, 200'001U);
+  EXPECT_EQ(ExamineTree(chain, {}).circle, Circle());
+
 }
 
 TEST(GreedyFileTest, SmallOnesAreWholeProducts) {
@@ -148,6 +159,66 @@ TEST(GreedyFileTest, FilesThatPlaceTooManyPartsAreRefusedBeforeTheyCostMuch) {
     ExpectHas(reading.error, "--max-parts");
     EXPECT_LT(reading.reader_mib, 600) << name;
     EXPECT_LT(reading.own_mib, 300) << name;
+  }
+}
+
+/** Reads a file that is no tree of parts, or has no unit, and expects to be told what is wrong. */
+void ExpectToldWhatIsWrong(const std::filesystem::path& file,
+                           const std::vector<std::string>& texts) {
+  SCOPED_TRACE(file);
+  const Reading reading = Read(file);
+  EXPECT_EQ(reading.parts, 0U);
+  ExpectHas(reading.error, file.filename().string() + ": ");
+  for (const std::string& text : texts) {
+    ExpectHas(reading.error, text);
+  }
+  EXPECT_EQ(reading.error.find("crash"), std::string::npos) << reading.error;
+}
+
+TEST(GreedyFileTest, AssembliesThatContainThemselvesAreNamed) {
+  const TemporaryFolder folder;
+  ExpectToldWhatIsWrong(folder.Write("circle.3mf", testing::MakeCircle3mf(true)),
+                        {"object 2 contains itself (2 > 3 > 2)"});
+  ExpectToldWhatIsWrong(folder.Write("aside.3mf", testing::MakeCircle3mf(false)),
+                        {"object 2 contains itself (2 > 3 > 2)"});
+  ExpectToldWhatIsWrong(folder.Write("circle.gltf", testing::MakeCircleGltf()),
+                        {"node 1 contains itself (1 > 2 > 1)"});
+  ExpectToldWhatIsWrong(
+      folder.Write("circle.step", testing::MakeCircleStep(MakeBoxStep(folder))),
+      {"product definition #", " contains itself"});
+}
+
+TEST(GreedyFileTest, AssembliesThatAreNestedTooDeepForTheLibrariesAreRefused) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kLevels = 50'000;
+  ExpectToldWhatIsWrong(folder.Write("deep.3mf", testing::MakeNested3mf(kLevels)),
+                        {"50001 levels deep; the limit is 1000"});
+  ExpectToldWhatIsWrong(folder.Write("deep.gltf", testing::MakeNestedGltf(12'000)),
+                        {"12001 levels deep; the limit is 1000"});
+}
+
+TEST(GreedyFileTest, UnitsInWhichNothingCanBeDrawnAreRefusedWithTheirEntity) {
+  const TemporaryFolder folder;
+  const std::string box = MakeBoxStep(folder);
+  const std::string unit = "SI_UNIT(.MILLI.,.METRE.)";
+  ASSERT_NE(box.find(unit), std::string::npos);
+  const auto write = [&](const std::string& name, const std::string& other) {
+    std::string text = box;
+    for (std::size_t at = text.find(unit); at != std::string::npos; at = text.find(unit)) {
+      text.replace(at, unit.size(), other);
+    }
+    return folder.Write(name, text);
+  };
+  for (const char* prefix : {"EXA", "PETA", "TERA", "GIGA", "MEGA", "ATTO", "FEMTO", "PICO"}) {
+    ExpectToldWhatIsWrong(write(std::string(prefix) + ".step",
+                                fmt::format("SI_UNIT(.{}.,.METRE.)", prefix)),
+                          {"entity #", " has a unit of length of 1e", " m, which is not between"});
+  }
+  ExpectToldWhatIsWrong(write("unknown.step", "SI_UNIT(.ZETTA.,.METRE.)"),
+                        {"entity #", " has a unit of length that is not defined"});
+  for (const char* prefix : {".MICRO.", ".CENTI.", ".KILO.", "$"}) {
+    EXPECT_EQ(Read(write("usual.step", fmt::format("SI_UNIT({},.METRE.)", prefix))).parts, 1U)
+        << prefix;
   }
 }
 

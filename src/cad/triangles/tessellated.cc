@@ -478,7 +478,7 @@ Result<void> TessellationReader::CheckUses(const std::vector<Id>& roots) const {
       uses[user].push_back(use.child);
     }
   }
-  return CheckPlaced(CountPlaced(uses, roots), options_.max_parts, product_->source);
+  return CheckTree(ExamineTree(uses, roots), options_.max_parts, product_->source, "product #");
 }
 
 void TessellationReader::ReportLimits() const {

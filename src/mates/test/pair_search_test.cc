@@ -17,7 +17,6 @@ using product::OccurrenceId;
 using product::Part;
 using product::PartId;
 using product::Product;
-using spatial::Box;
 using spatial::Pose;
 using testing::AddCone;
 using testing::AddCylinder;
@@ -127,29 +126,6 @@ TEST(PitfallN, AnInstanceWithOnePartMovedHasItsOwnMates) {
 }
 
 // Pitfall m.
-TEST(PitfallM, BoxPairsAreThoseOfComparingAll) {
-  Random random(17);
-  for (int draw = 0; draw < 20; ++draw) {
-    std::vector<Box> boxes;
-    for (int i = 0; i < 120; ++i) {
-      const Vec3 low(random.Uniform(0, 1), random.Uniform(0, 1), random.Uniform(0, draw + 0.1));
-      const Vec3 size(random.Uniform(0, 0.3), random.Uniform(0, 0.3), random.Uniform(0, 0.3));
-      boxes.push_back(i % 17 == 3 ? Box() : Box{low, low + size});
-    }
-    constexpr double kMargin = 0.01;
-    std::vector<std::pair<std::size_t, std::size_t>> expected;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-        if (!boxes[i].is_empty() && !boxes[j].is_empty() &&
-            boxes[i].Expanded(kMargin).Overlaps(boxes[j])) {
-          expected.emplace_back(i, j);
-        }
-      }
-    }
-    EXPECT_EQ(FindBoxPairs(boxes, kMargin), expected);
-  }
-}
-
 TEST(PitfallM, FiveThousandPartsTakeAFractionOfASecond) {
   Product product = MakeServos(1000);
   ASSERT_EQ(product.occurrences.size(), 5000U);
