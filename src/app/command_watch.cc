@@ -18,7 +18,7 @@ namespace hvas::app {
 namespace {
 
 constexpr double kLongWork = 3600;  // [s]: preparing large products takes minutes. A choice.
-constexpr double kLongest = 1e6;    // [s]
+constexpr double kLongest = 1e6;    // [s]: what a clock can add to its time. A choice.
 // Stages that look at the time themselves say more of it, and end this much before [s]: a choice.
 constexpr double kToStages = 0.1;
 // From the request to stop until the program is ended [s]: a choice.
@@ -97,9 +97,8 @@ int CommandWatch::Conclude(int status) {
 void CommandWatch::Watch() {
   std::unique_lock lock(mutex_);
   while (is_watched_) {
-    const double left =
-        std::min(limits_.time, kLongest) + kToStages -
-        1e-9 * static_cast<double>(MonotonicNs() - limits_.begin_ns);
+    const double left = std::min(limits_.time, kLongest) + kToStages -
+                        1e-9 * static_cast<double>(MonotonicNs() - limits_.begin_ns);
     if (left <= 0) {
       break;
     }

@@ -15,8 +15,9 @@ namespace hvas::app {
 
 /** The one watch over a command that works on a CAD file, from the start of the program to the last
  byte that it writes. Its stages are asked to stop when the time is over (stop()), and name
- themselves by NoteStage() (base/crash_note.h). What does not stop is ended with the program, so that
- no stage can go on for long. All its errors name the file, the stage, the limit and the option. */
+ themselves by NoteStage() (base/crash_note.h). What does not stop is ended with the program, so
+ that no stage can go on for long. All its errors name the file, the stage, the limit and the
+ option. */
 class CommandWatch {
  public:
   /** The watch of this program. The time begins with the first call. */
@@ -46,8 +47,8 @@ class CommandWatch {
   /** The error to report in place of one that came of a stop: that the time is over, if it is. */
   [[nodiscard]] Error Translate(const Error& error) const;
 
-  /** To be called when all is written, on the thread that began. Reports that the time was over,
-   unless an error was reported by Translate(). @returns the exit status. */
+  /** Ends the watch when all is written, and reports that the time was over, unless an error was
+   reported by Translate(). @returns the exit status. */
   [[nodiscard]] int Conclude(int status);
 
  private:

@@ -31,7 +31,8 @@ using product::Product;
 Result<void> Check(const OpenOptions& options) {
   if (const double unit = options.length_unit.value_or(1); !cad::IsUsableLengthUnit(unit)) {
     return Fail(ErrorCode::kInvalid, fmt::format("{} m is no length unit", unit),
-                options.file.filename().string(), fmt::format("give a length from {:g} to {:g} m, as 0.001", cad::kSmallestLengthUnit,
+                options.file.filename().string(),
+                fmt::format("give a length from {:g} to {:g} m, as 0.001", cad::kSmallestLengthUnit,
                             cad::kLargestLengthUnit));
   }
   if (!options.encoding.empty() && !cad::IsEncoding(options.encoding)) {

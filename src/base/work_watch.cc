@@ -42,9 +42,7 @@ std::uint64_t DefaultMemoryLimit() {
 }
 
 WorkWatch::WorkWatch(const WorkLimits& limits, std::stop_token stop)
-    : limits_(limits),
-      stop_(std::move(stop)),
-      memory_before_(ReadMemoryInUse()) {
+    : limits_(limits), stop_(std::move(stop)), memory_before_(ReadMemoryInUse()) {
   if (limits_.begin_ns == 0) {
     limits_.begin_ns = MonotonicNs();
   }
@@ -99,8 +97,7 @@ Error WorkWatch::Explain(std::string_view work, std::string where) const {
       break;
   }
   return {ErrorCode::kOutOfResource,
-          fmt::format("{} took longer than the {:g} s that opening a file may take", work,
-                      limits_.time),
+          fmt::format("{} took longer than {:g} s, which is the limit", work, limits_.time),
           std::move(where), "raise --time-limit, or export the product in parts"};
 }
 

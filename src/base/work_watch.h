@@ -26,7 +26,7 @@ struct WorkLimits {
  are left when it says no; then the work fails with Explain(). For one thread. */
 class WorkWatch {
  public:
-  /** The work begins now, or at WorkLimits::begin_ns. What this process holds in memory already does not count. */
+  /** The work begins now, or at WorkLimits::begin_ns. Memory that is in use does not count. */
   explicit WorkWatch(const WorkLimits& limits, std::stop_token stop = {});
 
   /** False from the moment on when a limit is reached or a stop is asked for. Costs some 30 ns, and

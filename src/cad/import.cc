@@ -37,6 +37,7 @@ class Attempts {
     const double time = std::clamp(limits.time, 0.0, kLongest);
     const double part_time =
         limits.part_time > 0 ? std::min(limits.part_time, kLongest) : kPartShare * time;
+    time_ = time;
     call_.program = std::move(worker);
     call_.deadline_ns =
         (limits.begin_ns != 0 ? limits.begin_ns : MonotonicNs()) + std::llround(1e9 * time);
@@ -68,6 +69,7 @@ class Attempts {
   std::string name_;
   ImportOptions options_;
   WorkerCall call_;
+  double time_{0};  // [s]
   Diagnostics omissions_;
   bool is_repeatable_{true};
   MappedFile output_;
@@ -123,11 +125,13 @@ Unexpected Attempts::GiveUp(const WorkerRun& run) const {
   } else if (!run.stage.empty()) {
     at = fmt::format(" while it was at the stage \"{}\"", run.stage);
   }
-  const std::string message = run.fate == WorkerFate::kCrashed
-                                  ? fmt::format("the reader of CAD files crashed on this file "
-                                                "(signal {}){}",
-                                                run.signal, at)
-                                  : fmt::format("the reader {}{}", run.Describe(), at);
+  std::string message = fmt::format("the reader {}{}", run.Describe(), at);
+  if (run.fate == WorkerFate::kCrashed) {
+    message =
+        fmt::format("the reader of CAD files crashed on this file (signal {}){}", run.signal, at);
+  } else if (run.fate == WorkerFate::kTimeUp) {
+    message = fmt::format("the reader exceeded the time limit of {:g} s{}", time_, at);
+  }
   switch (run.fate) {
     case WorkerFate::kCancelled:
       return Fail(ErrorCode::kCancelled, "opening the file was cancelled", name_);

@@ -81,8 +81,7 @@ class UnitSearch {
         watch_(watch),
         is_free_(product.occurrences.size(), true) {
     for (const Occurrence& occurrence : product.occurrences) {
-      boxes_.push_back(
-          spatial::Transform(occurrence.X_WB, product.part_of(occurrence.id).box_B));
+      boxes_.push_back(spatial::Transform(occurrence.X_WB, product.part_of(occurrence.id).box_B));
       is_fastener_.push_back(HasNameOfFastener(occurrence));
     }
   }
@@ -318,8 +317,7 @@ class UnitSearch {
     for (const OccurrenceId id : node.occurrences) {
       if (!(product_.part_of(id).mass.volume > 0)) {
         surfaces.push_back(id);
-      } else if (is_free_[id.index()] &&
-                 (node.parent.is_valid() || are_bodies || IsFastener(id))) {
+      } else if (is_free_[id.index()] && (node.parent.is_valid() || are_bodies || IsFastener(id))) {
         const Box& box = boxes_[id.index()];
         solids.push_back(id);
         near.push_back(box.is_empty() ? Box() : box.Expanded(kInside * box.size().norm()));

@@ -81,7 +81,9 @@ class BoxTree {
     Vec3::Index axis = 0;
     centres.size().maxCoeff(&axis);
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto at = [this](std::size_t i) {
+      return order_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
     std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t i, std::uint32_t k) {
       const double x = boxes_[i].centre()[axis];
       const double y = boxes_[k].centre()[axis];

@@ -16,8 +16,8 @@ namespace hvas::app {
  more often than the eye can follow. One thread at a time. */
 void ShowProgress(std::string_view stage, double fraction);
 
-/** Makes what notes the stages of the work for CommandWatch and for the message of a crash, and shows
- them to a person who watches. */
+/** Makes what notes the stages of the work for CommandWatch and for the message of a crash, and
+ shows them to a person who watches. */
 [[nodiscard]] std::function<void(std::string_view stage, double fraction)> MakeProgress(
     bool is_quiet);
 

@@ -94,8 +94,7 @@ Result<void> Inspect(const InspectOptions& options) {
   if (options.is_json) {
     NoteStage("output");
     // Names that are no UTF-8 in the file must not cost the whole answer.
-    fmt::print("{}\n",
-               json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }
   return {};
 }

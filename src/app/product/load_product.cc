@@ -71,8 +71,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited) {
           ->capture_default_str();
   if (limited == Limited::kCommand) {
     command->parse_complete_callback([options, time] {
-      CommandWatch::Get().Begin(options->file.filename().string(), options->limits,
-                                !time->empty());
+      CommandWatch::Get().Begin(options->file.filename().string(), options->limits, !time->empty());
     });
   }
   command

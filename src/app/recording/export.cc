@@ -180,7 +180,6 @@ Result<void> WritePlannedWays(const ExportOptions& options, const Product& produ
   prepare.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   prepare.progress = MakeProgress(options.load.is_quiet);
   prepare.stop = CommandWatch::Get().stop();
-  CommandWatch::Get().AllowLongWork();
   Diagnostics diagnostics;
   const auto model = assembly::PrepareModel(product, prepare, &diagnostics);
   if (!model) {
@@ -197,6 +196,7 @@ Result<void> ExportProduct(const ExportOptions& options, const std::string& form
   if (!product) {
     return Unexpected(product.error());
   }
+  CommandWatch::Get().AllowLongWork();
   NoteStage("export");
   cad::PartMotions motions;
   if (!options.poses.empty()) {
@@ -228,6 +228,7 @@ int RunExport(const ExportOptions& options) {
   const std::string format = FormatOf(options.output);
   Result<void> done = Check(options, format);
   if (done && IsRecord(options.load.file)) {
+    CommandWatch::Get().End();  // Its limits are for CAD files.
     const auto damage = [&] {
       std::optional<Busy> busy;
       if (!options.load.is_quiet) {

@@ -23,15 +23,16 @@ using testing::ProductFile;
 using testing::Ran;
 using testing::RunHvas;
 
-/** Runs a command with a limit of time and expects that it ends soon after with the error that names
- the file, the limit and the option. @param file  Stands in the arguments. */
+/** Runs a command with a limit of time and expects that it ends soon after with the error that
+ names the file, the limit and the option. @param file  Stands in the arguments. */
 void ExpectEndsInTime(std::vector<std::string> arguments, const std::string& name, double limit_s) {
   arguments.insert(arguments.end(), {"--no-cache", "--time-limit", fmt::format("{:g}", limit_s)});
   SCOPED_TRACE(fmt::format("{}", fmt::join(arguments, " ")));
   const auto begin = std::chrono::steady_clock::now();
   const Ran ran = RunHvas(arguments);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  // A second and a tenth are promised; the rest is for a busy machine, which starts programs slowly.
+  // A second and a tenth are promised; the rest is for a busy machine, which starts programs
+  // slowly.
   EXPECT_LT(taken.count(), 1.1 * limit_s + 1 + 4);
   EXPECT_EQ(ran.status, 1) << ran.err;
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, name + ": ", ran.err);

@@ -25,8 +25,8 @@ TEST(WorkWatchTest, TimeThatIsUpEndsTheWorkForGood) {
   const Error error = watch.Explain("finding the mates", "rig.step");
   EXPECT_EQ(error.code, ErrorCode::kOutOfResource);
   EXPECT_EQ(error.ToString(),
-            "rig.step: finding the mates took longer than the 0.02 s that opening a file may take "
-            "(raise --time-limit, or export the product in parts)");
+            "rig.step: finding the mates took longer than 0.02 s, which is the limit (raise "
+            "--time-limit, or export the product in parts)");
 }
 
 TEST(WorkWatchTest, MemoryThatIsUsedUpEndsTheWork) {

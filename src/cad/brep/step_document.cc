@@ -69,8 +69,8 @@ IFSelect_ReturnStatus Parse(const std::filesystem::path& file, const StepText& t
   return status;
 }
 
-/** The parts and subassemblies that the file places, by the numbers of their definitions in the file.
- To be known before the transfer, which goes through all of them. */
+/** The parts and subassemblies that the file places, by the numbers of their definitions in the
+ file. To be known before the transfer, which goes through all of them. */
 PlacedTree ExamineProducts(const STEPCAFControl_Reader& reader) {
   const Handle(StepData_StepModel) model = reader.Reader().StepModel();
   Uses uses;

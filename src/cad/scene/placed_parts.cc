@@ -89,8 +89,9 @@ class TreeWalk {
     if (!tree_.circle.empty()) {
       return;
     }
-    const auto begin = std::find_if(
-        path_.begin(), path_.end(), [&](const Step& step) { return step.definition == definition; });
+    const auto begin = std::find_if(path_.begin(), path_.end(), [&](const Step& step) {
+      return step.definition == definition;
+    });
     std::transform(begin, path_.end(), std::back_inserter(tree_.circle),
                    [](const Step& step) { return step.definition; });
     tree_.circle.push_back(definition);
@@ -113,14 +114,14 @@ Result<void> CheckTree(const PlacedTree& tree, std::size_t most, const std::stri
   if (!tree.circle.empty()) {
     constexpr std::size_t kMostNamed = 8;  // A choice.
     const std::size_t named = std::min(tree.circle.size(), kMostNamed);
-    return Fail(ErrorCode::kUnreadable,
-                fmt::format("{}{}{} contains itself ({}{})", kind, kind.ends_with('#') ? "" : " ",
-                            tree.circle.front(),
-                            fmt::join(tree.circle.begin(),
-                                      tree.circle.begin() + static_cast<std::ptrdiff_t>(named),
-                                      " > "),
-                            named < tree.circle.size() ? " > ..." : ""),
-                name, "correct the assembly in the CAD system and export it again");
+    return Fail(
+        ErrorCode::kUnreadable,
+        fmt::format("{}{}{} contains itself ({}{})", kind, kind.ends_with('#') ? "" : " ",
+                    tree.circle.front(),
+                    fmt::join(tree.circle.begin(),
+                              tree.circle.begin() + static_cast<std::ptrdiff_t>(named), " > "),
+                    named < tree.circle.size() ? " > ..." : ""),
+        name, "correct the assembly in the CAD system and export it again");
   }
   if (tree.count > kNodesPerPart * static_cast<double>(most)) {
     return Fail(ErrorCode::kUnsupported,

@@ -29,11 +29,11 @@ struct PlacedTree {
   std::vector<std::uint64_t> circle;
 };
 
-/** Examines the tree below the roots, and looks for a circle among all definitions. No recursion. */
+/** Examines the tree below the roots, without recursion; circles among all definitions. */
 [[nodiscard]] PlacedTree ExamineTree(const Uses& uses, const std::vector<std::uint64_t>& roots);
 
 /** Checks a tree that a stranger's file has, before anything goes through it by recursion: whether
- it is a tree, no deeper than kMostLevels, and holds no more than `most` parts. Errors: kUnsupported,
+ it is a tree, no deeper than kMostLevels, with no more than `most` parts. Errors: kUnsupported;
  kUnreadable (a circle). @param name  The file. @param kind  What a definition is: "object". */
 [[nodiscard]] Result<void> CheckTree(const PlacedTree& tree, std::size_t most,
                                      const std::string& name, std::string_view kind);

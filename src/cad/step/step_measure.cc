@@ -61,7 +61,10 @@ std::optional<Raw> ReadRaw(const StepText& text, std::uint64_t id) {
 
 /** NaN for a prefix that ISO 10303-41 does not have. */
 double PrefixScale(std::string_view prefix) {
-  static constexpr std::array<std::pair<std::string_view, double>, 16> kPrefixes{{{"EXA", 1e18}, {"PETA", 1e15}, {"TERA", 1e12}, {"GIGA", 1e9},
+  static constexpr std::array<std::pair<std::string_view, double>, 16> kPrefixes{{{"EXA", 1e18},
+                                                                                  {"PETA", 1e15},
+                                                                                  {"TERA", 1e12},
+                                                                                  {"GIGA", 1e9},
                                                                                   {"MEGA", 1e6},
                                                                                   {"KILO", 1e3},
                                                                                   {"HECTO", 1e2},
@@ -71,7 +74,9 @@ double PrefixScale(std::string_view prefix) {
                                                                                   {"MILLI", 1e-3},
                                                                                   {"MICRO", 1e-6},
                                                                                   {"NANO", 1e-9},
-                                                                                  {"PICO", 1e-12}, {"FEMTO", 1e-15}, {"ATTO", 1e-18}}};
+                                                                                  {"PICO", 1e-12},
+                                                                                  {"FEMTO", 1e-15},
+                                                                                  {"ATTO", 1e-18}}};
   for (const auto& [name, scale] : kPrefixes) {
     if (prefix == name) {
       return scale;

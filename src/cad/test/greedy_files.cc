@@ -245,7 +245,8 @@ std::string MakeCircle3mf(bool is_built) {
   std::string objects;
   for (const auto& [id, used] : {std::pair(2, 3), std::pair(3, 2)}) {
     objects += fmt::format(
-        "<object id=\"{}\"><components><component objectid=\"{}\"/></components></object>", id, used);
+        "<object id=\"{}\"><components><component objectid=\"{}\"/></components></object>", id,
+        used);
   }
   return Zip(Package(Model(objects, fmt::format("<item objectid=\"{}\"/>", is_built ? 2 : 1))));
 }

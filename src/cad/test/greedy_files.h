@@ -23,8 +23,8 @@ namespace hvas::cad::testing {
 /** glTF with a box and two nodes that are children of each other. */
 [[nodiscard]] std::string MakeCircleGltf();
 
-/** A STEP file of one part, with two assemblies added that use each other. @param part  As OpenCASCADE
- writes it. */
+/** A STEP file of one part, with two assemblies added that use each other. @param part  As
+ OpenCASCADE writes it. */
 [[nodiscard]] std::string MakeCircleStep(const std::string& part);
 
 /** 3MF with `count` boxes, `step` millimetres apart. */

@@ -117,7 +117,6 @@ TEST(PlacedTreeTest, LongChainsHaveAnEnd) {
   EXPECT_EQ(ExamineTree(chain, {0}).count, 200'001);
   EXPECT_EQ(ExamineTree(chain, {0}).levels, 200'001U);
   EXPECT_EQ(ExamineTree(chain, {}).circle, Circle());
-
 }
 
 TEST(GreedyFileTest, SmallOnesAreWholeProducts) {
@@ -183,9 +182,8 @@ TEST(GreedyFileTest, AssembliesThatContainThemselvesAreNamed) {
                         {"object 2 contains itself (2 > 3 > 2)"});
   ExpectToldWhatIsWrong(folder.Write("circle.gltf", testing::MakeCircleGltf()),
                         {"node 1 contains itself (1 > 2 > 1)"});
-  ExpectToldWhatIsWrong(
-      folder.Write("circle.step", testing::MakeCircleStep(MakeBoxStep(folder))),
-      {"product definition #", " contains itself"});
+  ExpectToldWhatIsWrong(folder.Write("circle.step", testing::MakeCircleStep(MakeBoxStep(folder))),
+                        {"product definition #", " contains itself"});
 }
 
 TEST(GreedyFileTest, AssembliesThatAreNestedTooDeepForTheLibrariesAreRefused) {
@@ -210,9 +208,9 @@ TEST(GreedyFileTest, UnitsInWhichNothingCanBeDrawnAreRefusedWithTheirEntity) {
     return folder.Write(name, text);
   };
   for (const char* prefix : {"EXA", "PETA", "TERA", "GIGA", "MEGA", "ATTO", "FEMTO", "PICO"}) {
-    ExpectToldWhatIsWrong(write(std::string(prefix) + ".step",
-                                fmt::format("SI_UNIT(.{}.,.METRE.)", prefix)),
-                          {"entity #", " has a unit of length of 1e", " m, which is not between"});
+    ExpectToldWhatIsWrong(
+        write(std::string(prefix) + ".step", fmt::format("SI_UNIT(.{}.,.METRE.)", prefix)),
+        {"entity #", " has a unit of length of 1e", " m, which is not between"});
   }
   ExpectToldWhatIsWrong(write("unknown.step", "SI_UNIT(.ZETTA.,.METRE.)"),
                         {"entity #", " has a unit of length that is not defined"});

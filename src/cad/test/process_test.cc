@@ -279,12 +279,15 @@ TEST_F(ProcessTest, DeathBeforeAnyPartIsAnError) {
     const char* message;
   };
 
-  for (const Case& c : {Case{"crash start", ErrorCode::kUnreadable, "crashed"},
-                        Case{"exit start", ErrorCode::kUnreadable, "exit status 3"},
-                        Case{"memory start", ErrorCode::kOutOfResource, "memory"},
-                        Case{"silent", ErrorCode::kInternal, "no product"},
-                        Case{"garbage", ErrorCode::kInternal, "no product"},
-                        Case{"truncate", ErrorCode::kInternal, "no product"}}) {
+  for (const Case& c :
+       {Case{"crash start", ErrorCode::kUnreadable,
+             "the reader of CAD files crashed on this file (signal 11) while it was "
+             "at the stage \"start\""},
+        Case{"exit start", ErrorCode::kUnreadable, "exit status 3"},
+        Case{"memory start", ErrorCode::kOutOfResource, "memory"},
+        Case{"silent", ErrorCode::kInternal, "no product"},
+        Case{"garbage", ErrorCode::kInternal, "no product"},
+        Case{"truncate", ErrorCode::kInternal, "no product"}}) {
     Behave(c.how);
     const auto product = Open();
     ASSERT_FALSE(product.has_value()) << c.how;
@@ -303,6 +306,7 @@ TEST_F(ProcessTest, TimeLimitEndsWhateverItDoes) {
     EXPECT_LT(MonotonicNs() - start_ns, 3 * kNsPerSecond) << how;
     ASSERT_FALSE(product.has_value()) << how;
     EXPECT_EQ(product.error().code, ErrorCode::kOutOfResource);
+    ExpectHas(product.error().message, "the time limit of 0.4 s");
     ExpectHas(product.error().remedy, "--time-limit");
   }
   EXPECT_TRUE(AreGone());
