@@ -146,6 +146,7 @@ class UnitSearch {
 
   [[nodiscard]] std::vector<Box> BoxesOf(const std::vector<OccurrenceId>& ids) const {
     std::vector<Box> boxes;
+    boxes.reserve(ids.size());
     for (const OccurrenceId id : ids) {
       boxes.push_back(boxes_[id.index()]);
     }
@@ -523,7 +524,7 @@ std::vector<Weld> FindWelds(const Product& product, const std::vector<KeptApart>
 
 Result<void> WeldUnits(const std::vector<KeptApart>& apart, Product* product,
                        Diagnostics* diagnostics, WorkWatch* watch) {
-  if (const auto checked = CheckNames(*product, apart); !checked) {
+  if (auto checked = CheckNames(*product, apart); !checked) {
     return checked;
   }
   const std::vector<Weld> duplicates = FindDuplicates(*product, apart);
