@@ -253,7 +253,7 @@ Result<void> WriteOutput(const PathOptions& options, const Product& product,
 }
 
 Result<void> WritePath(const PathOptions& options) {
-  if (const auto checked = Check(options); !checked) {
+  if (auto checked = Check(options); !checked) {
     return checked;
   }
   Diagnostics diagnostics;

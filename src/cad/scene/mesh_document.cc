@@ -55,7 +55,7 @@ Result<void> Read3mfModel(const std::filesystem::path& file, const ImportOptions
                 "export the file again");
   }
   const Model3mf model = ParseModel3mf(*xml);
-  if (const auto checked = CheckTree(model.placed, options.max_parts, name, "object"); !checked) {
+  if (auto checked = CheckTree(model.placed, options.max_parts, name, "object"); !checked) {
     return checked;
   }
   conventions->length_unit = model.length_unit;
