@@ -359,8 +359,7 @@ Result<void> DocumentBuilder::Build(const std::vector<TopoDS_Shape>& roots, std:
     return Fail(ErrorCode::kUnreadable, "the IGES file has no solids, surfaces or curves", file_,
                 "export solids or trimmed surfaces");
   }
-  if (auto checked =
-          CheckTree(ExamineTree(uses_, {NumberOf(root)}), max_parts, file_, "entity");
+  if (auto checked = CheckTree(ExamineTree(uses_, {NumberOf(root)}), max_parts, file_, "entity");
       !checked) {
     return checked;
   }
