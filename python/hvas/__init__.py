@@ -14,9 +14,20 @@ from . import fits
 from ._hvas import STATES, Model, Product, Record, Run, __version__
 from ._hvas import open_product as _open_product
 from ._hvas import prepare as _prepare
-from .types import Error
+from .types import ArgumentTypeError, Error
 
-__all__ = ["Error", "Model", "Product", "Record", "Run", "STATES", "__version__", "export", "fits", "open", "prepare"]
+__all__ = ["ArgumentTypeError", "Error", "Model", "Product", "Record", "Run", "STATES", "__version__", "export", "fits", "open", "prepare"]
+
+
+def _texts(name, values):
+    """A list of the texts; a single text would be taken for its letters."""
+    try:
+        texts = [] if isinstance(values, (str, bytes)) else list(values)
+    except TypeError:
+        texts = [None]
+    if isinstance(values, (str, bytes)) or not all(isinstance(text, str) for text in texts):
+        raise ArgumentTypeError(f"{name} has to be a sequence of texts, not {values!r}")
+    return texts
 
 
 def open(file, *, fits=(), unit=None, encoding="", apart=(), rigid=(), cache=True, time_limit=120.0, progress=None):
@@ -38,8 +49,9 @@ def open(file, *, fits=(), unit=None, encoding="", apart=(), rigid=(), cache=Tru
 
     Raises:
         hvas.Error: with what happened, where, and a remedy.
+        ValueError, TypeError: for an argument that is out of its range, or of another type, as everywhere in the package.
     """
-    return _open_product(file, list(fits), unit, encoding, list(apart), list(rigid), cache, time_limit, progress)
+    return _open_product(file, _texts("fits", fits), unit, encoding, _texts("apart", apart), _texts("rigid", rigid), cache, time_limit, progress)
 
 
 def prepare(product, *, seed=1, base="", first_parts=(), cache=True, progress=None):
@@ -56,7 +68,7 @@ def prepare(product, *, seed=1, base="", first_parts=(), cache=True, progress=No
     Raises:
         hvas.Error
     """
-    return _prepare(product, seed, base, list(first_parts), cache, progress)
+    return _prepare(product, seed, base, _texts("first_parts", first_parts), cache, progress)
 
 
 def export(product, file):

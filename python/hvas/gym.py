@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import hvas
+from hvas._hvas import check_integer, check_number
 
 try:
     import gymnasium
@@ -112,6 +113,11 @@ OBSERVATION = (
 _MOST = np.array([10.0] * 3 + [math.pi + 1e-9] * 3 + [1000.0] * 3 + [100.0] * 3 + [10.0, 128.0])
 
 
+# Limits of what an environment may be made with: a product of 10 m, ten times the force of any device, half an hour of ticks
+# in one step, a session of an hour, a friction as a side file may state it, a picture of 4096 pixels. Choices.
+_MOST_LENGTH, _MOST_FORCE, _MOST_TICKS, _MOST_TIME, _MOST_FRICTION, _MOST_PIXELS = 10.0, 1000.0, 1_000_000, 3600.0, 2.0, 4096
+
+
 def _products():
     """The folder of the example products: $HVAS_PRODUCTS, that of the sources, or of an installation."""
     here = pathlib.Path(__file__).resolve()
@@ -186,13 +192,32 @@ class Insertion(Base):
                  force=20.0, ticks=20, limit_s=20.0, picture=None, render_mode=None):
         if mode not in ("pose", "wrench"):
             raise ValueError("mode is 'pose' or 'wrench'")
+        for name, value, least, most in (
+                ("offset", offset, 0, _MOST_LENGTH), ("tilt", tilt, 0, math.pi), ("spin", spin, 0, math.pi),
+                ("clear", clear, 0, _MOST_LENGTH), ("reach", reach, 0, _MOST_LENGTH), ("turn", turn, 0, math.pi),
+                ("lead", lead, 0, _MOST_LENGTH), ("most_turn", most_turn, 0, math.pi), ("force", force, 0, _MOST_FORCE),
+                ("limit_s", limit_s, 0, _MOST_TIME)):
+            check_number(name, value, least, most)
+        check_integer("ticks", ticks, 1, _MOST_TICKS)
+        if friction is not None:
+            coefficients = (friction,) if np.ndim(friction) == 0 else tuple(friction)
+            if len(coefficients) not in (1, 2):
+                raise ValueError(f"friction has to be a coefficient, or the least and the largest, not {friction!r}")
+            for coefficient in coefficients:
+                check_number("friction", coefficient, 0, _MOST_FRICTION)
+        if picture is not None:
+            if np.shape(picture) != (2,):
+                raise ValueError(f"picture has to be a width and a height, not {picture!r}")
+            for pixels in picture:
+                check_integer("picture", pixels, 1, _MOST_PIXELS)
         self.model, self.mode, self.condition = model, mode, condition
         self.contact_in_holes, self.seeds_fits = contact_in_holes, seeds_fits
         self.friction, self.threads_turn = friction, threads_turn
         self.offset, self.tilt, self.spin, self.clear = offset, tilt, spin, clear
         self.reach, self.turn, self.lead, self.most_turn, self.force = reach, turn, lead, most_turn, force
         self.ticks, self.limit_s = ticks, limit_s
-        self.part = model.steps[step]
+        steps = model.steps
+        self.part = steps[check_integer("step", step, 0, len(steps) - 1)]
         goal = np.array(self.part.goal)
         self._p, self._q, self._R = goal[:3], goal[3:], _rotation(goal[3:])
         self._out = self._R.T @ np.array(self.part.extraction)  # The way out in the frame of the place.
@@ -230,9 +255,12 @@ class Insertion(Base):
         return self._with_picture(self._observe()), self._info()
 
     def step(self, action):
-        action = np.clip(np.asarray(action, dtype=np.float64), -1, 1)
+        action = np.asarray(action)
+        if action.dtype.kind not in "fiu":
+            raise hvas.ArgumentTypeError(f"action has to be six numbers, not an array of {action.dtype}")
         if action.shape != (6,) or not np.all(np.isfinite(action)):
-            raise ValueError("an action is six finite numbers")
+            raise ValueError(f"action has to be six finite numbers, not {action!r}")
+        action = np.clip(action.astype(np.float64), -1, 1)
         position, q = self._in_place(np.array(self.run.led))
         if self.mode == "wrench":
             self._led_p, force = position, self._load + self._R @ (self.force * action[:3])
@@ -294,6 +322,7 @@ def _insertion(file, path, fits=(), **options):
 
 def peg_in_hole(clearance=0.1e-3, **options):
     """A peg of 20 mm in a blind bore with this clearance in the diameter [m]."""
+    check_number("clearance", clearance, 0, 20e-3)
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "peg_hole.step"
         shutil.copy(_products() / file.name, file)
@@ -350,6 +379,9 @@ class Vector:
     """
 
     def __init__(self, make_one, count, threads=None):
+        check_integer("count", count, 1, 4096)  # A choice: each has a thread's work.
+        if threads is not None:
+            check_integer("threads", threads, 1, 256)
         self.environments = [make_one() for _ in range(count)]
         self.num_envs = count
         self._pool = ThreadPoolExecutor(threads or os.cpu_count())

@@ -29,6 +29,10 @@ class Error(Exception):
         return f"{text} ({self.remedy})" if self.remedy else text
 
 
+class ArgumentTypeError(TypeError, ValueError):
+    """An argument is of another type than it has to be: also a ValueError, so that one clause catches all refused arguments."""
+
+
 @dataclass(frozen=True)
 class Diagnostic:
     """Something odd about an input that did not stop the work."""

@@ -34,9 +34,6 @@ T Take(Result<T> result) {
 [[nodiscard]] py::tuple ToTuple(const Vec3& v);
 [[nodiscard]] py::tuple ToTuple(const spatial::Pose& X);
 
-/** A pose of seven numbers. Throws ValueError for others. */
-[[nodiscard]] spatial::Pose ToPose(const py::handle& numbers);
-
 /** A progress function for work that runs without the interpreter's lock: takes the lock, calls
  `progress` where it is not None, and asks for a stop where Python was interrupted (Ctrl-C). */
 [[nodiscard]] std::function<void(std::string_view stage, double fraction)> MakeProgress(

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bindings.h"
+#include "arguments.h"
 
 namespace hvas::python {
 namespace {
@@ -13,7 +13,8 @@ const char* NameOf(fits::FitKind kind) {
                                               : "interference";
 }
 
-py::object CalcLimits(const std::string& code, double diameter) {
+py::object CalcLimits(const std::string& code, const py::object& diameter_object) {
+  const double diameter = ToNumber("diameter", diameter_object, kLength);
   const fits::FitLimits limits = Take(fits::CalcFitLimits(Take(fits::ParseFit(code)), diameter));
   return MakeDataclass(
       "FitLimits",
@@ -26,11 +27,14 @@ py::object CalcLimits(const std::string& code, double diameter) {
           py::arg("max_clearance") = limits.max_clearance));
 }
 
-fits::PressFitParameters MakePress(double diameter, double length, double interference,
-                                   double hub_diameter, double shaft_bore, double friction) {
+fits::PressFitParameters MakePress(double diameter, const py::object& length, double interference,
+                                   const py::object& hub, double shaft_bore,
+                                   const py::object& friction_object) {
+  const double hub_diameter = ToNumber("hub_diameter", hub, kLengthOrNone);
+  const double friction = ToNumber("friction", friction_object, kFriction);
   fits::PressFitParameters parameters;
   parameters.joint_diameter = diameter;
-  parameters.length = length;
+  parameters.length = ToNumber("length", length, kLength);
   parameters.interference = interference;
   parameters.hub_diameter = hub_diameter > 0 ? hub_diameter : 2 * diameter;
   parameters.shaft_bore = shaft_bore;
@@ -40,10 +44,13 @@ fits::PressFitParameters MakePress(double diameter, double length, double interf
   return parameters;
 }
 
-py::object CalcPress(double diameter, double length, double interference, double hub_diameter,
-                     double shaft_bore, double friction) {
+py::object CalcPress(const py::object& diameter, const py::object& length,
+                     const py::object& interference, const py::object& hub_diameter,
+                     const py::object& shaft_bore, const py::object& friction) {
   const fits::PressFit fit = Take(fits::CalcPressFit(
-      MakePress(diameter, length, interference, hub_diameter, shaft_bore, friction)));
+      MakePress(ToNumber("diameter", diameter, kLength), length,
+                ToNumber("interference", interference, kLengthOrNone), hub_diameter,
+                ToNumber("shaft_bore", shaft_bore, kLengthOrNone), friction)));
   return MakeDataclass(
       "PressFit",
       py::dict(py::arg("pressure") = fit.pressure, py::arg("press_in_force") = fit.press_in_force,
@@ -52,17 +59,21 @@ py::object CalcPress(double diameter, double length, double interference, double
                py::arg("shaft_contraction") = fit.shaft_contraction));
 }
 
-py::object CalcPopulation(const std::string& code, double diameter, double length,
-                          std::int64_t count, std::uint64_t seed, double hub_diameter,
-                          double friction, int threads) {
+py::object CalcPopulation(const std::string& code, const py::object& diameter_object,
+                          const py::object& length, const py::object& count, const py::object& seed,
+                          const py::object& hub_diameter, const py::object& friction,
+                          const py::object& threads) {
+  constexpr std::int64_t kMostAssemblies = 100'000'000;  // As `hvas fit --population` has it.
+  constexpr std::int64_t kMostThreads = 256;             // As `hvas fit --threads` has it.
+  const double diameter = ToNumber("diameter", diameter_object, kLength);
   const fits::FitLimits limits = Take(fits::CalcFitLimits(Take(fits::ParseFit(code)), diameter));
   fits::PopulationParameters parameters;
   parameters.lands.push_back({fits::SizeDistribution::FromZone(limits.hole),
                               fits::SizeDistribution::FromZone(limits.shaft), 0, kStations,
                               MakePress(diameter, length, 0, hub_diameter, 0, friction)});
-  parameters.count = count;
-  parameters.seed = seed;
-  parameters.threads = threads;
+  parameters.count = ToInteger("count", count, 1, kMostAssemblies);
+  parameters.seed = ToSeed("seed", seed);
+  parameters.threads = static_cast<int>(ToInteger("threads", threads, 1, kMostThreads));
   auto drawn = [&] {
     const py::gil_scoped_release unlocked;
     return fits::CalcPopulation(parameters);

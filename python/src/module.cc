@@ -1,3 +1,4 @@
+#include "arguments.h"
 #include "bindings.h"
 
 namespace hvas::python {
@@ -20,23 +21,6 @@ py::tuple ToTuple(const Vec3& v) {
 py::tuple ToTuple(const spatial::Pose& X) {
   return py::make_tuple(X.p().x(), X.p().y(), X.p().z(), X.q().w(), X.q().x(), X.q().y(),
                         X.q().z());
-}
-
-spatial::Pose ToPose(const py::handle& numbers) {
-  const auto list = py::cast<std::vector<double>>(numbers);
-  if (list.size() != 7) {
-    throw py::value_error("a pose has seven numbers: x, y, z [m], then the quaternion w, x, y, z");
-  }
-  Quat q(list[3], list[4], list[5], list[6]);
-  // A quaternion of another length than 1 is more often a mistake than a rounding.
-  if (!(std::abs(q.norm() - 1) < 1e-3)) {
-    throw py::value_error("the quaternion of a pose (w, x, y, z) has to be of length 1");
-  }
-  const Vec3 p(list[0], list[1], list[2]);
-  if (!p.allFinite()) {
-    throw py::value_error("the position of a pose is not finite");
-  }
-  return {q.normalized(), p};
 }
 
 namespace {
@@ -79,6 +63,7 @@ void ThrowInterrupt() {
 PYBIND11_MODULE(_hvas, module) {
   module.doc() = "The library of HVAS. Use the package hvas.";
   module.attr("__version__") = hvas::api::LibraryVersion();
+  hvas::python::DefineArguments(&module);
   hvas::python::DefineFits(&module);
   hvas::python::DefineProduct(&module);
   hvas::python::DefineRun(&module);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bindings.h"
+#include "arguments.h"
 
 namespace hvas::python {
 namespace {
@@ -74,8 +74,12 @@ py::list ListOf(const Items& items, const Make& make) {
   return list;
 }
 
-py::array_t<double> Vertices(const Product& product, std::size_t part) {
-  const auto& vertices = product.parts.at(part).mesh.vertices;
+const product::Part& PartOf(const Product& product, const py::object& part) {
+  return product.parts[ToIndex("part", part, product.parts.size())];
+}
+
+py::array_t<double> Vertices(const Product& product, const py::object& part) {
+  const auto& vertices = PartOf(product, part).mesh.vertices;
   py::array_t<double> array({static_cast<py::ssize_t>(vertices.size()), py::ssize_t{3}});
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -86,8 +90,8 @@ py::array_t<double> Vertices(const Product& product, std::size_t part) {
 }
 
 // The numbers where they are: the product lives as long as the array.
-py::array Triangles(const py::object& self, std::size_t part) {
-  const auto& triangles = self.cast<const Product&>().parts.at(part).mesh.triangles;
+py::array Triangles(const py::object& self, const py::object& part) {
+  const auto& triangles = PartOf(self.cast<const Product&>(), part).mesh.triangles;
   return py::array_t<std::uint32_t>({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}},
                                     triangles.empty() ? nullptr : triangles.front().data(), self);
 }
@@ -125,11 +129,10 @@ py::dict Export(const Product& product, const std::string& format, const std::st
 }
 
 std::shared_ptr<Product> Open(const std::filesystem::path& file,
-                              const std::vector<std::string>& fits,
-                              const std::optional<double>& unit, const std::string& encoding,
-                              const std::vector<std::string>& apart,
+                              const std::vector<std::string>& fits, const py::object& unit,
+                              const std::string& encoding, const std::vector<std::string>& apart,
                               const std::vector<std::string>& rigid, bool is_cached,
-                              double time_limit, const py::object& progress,
+                              const py::object& time_limit, const py::object& progress,
                               py::list* diagnostics) {
   std::stop_source stop;
   assembly::OpenOptions options;
@@ -137,9 +140,11 @@ std::shared_ptr<Product> Open(const std::filesystem::path& file,
   options.fits = fits;
   options.apart = apart;
   options.rigid = rigid;
-  options.length_unit = unit;
+  if (!unit.is_none()) {
+    options.length_unit = ToNumber("unit", unit, kLength);
+  }
   options.encoding = encoding;
-  options.limits.time = time_limit;
+  options.limits.time = ToNumber("time_limit", time_limit, {0, kMostTime, true});
   options.progress = MakeProgress(progress, &stop);
   options.stop = stop.get_token();
   if (is_cached) {
@@ -187,8 +192,8 @@ void DefineProduct(py::module_* module) {
                              })
       .def(
           "features",
-          [](const Product& product, std::size_t part) {
-            return ListOf(product.parts.at(part).features,
+          [](const Product& product, const py::object& part) {
+            return ListOf(PartOf(product, part).features,
                           [](const auto& feature) { return Describe(feature); });
           },
           py::arg("part"), "Holes, shafts, planes, cones and spheres of a part.")
@@ -207,9 +212,9 @@ void DefineProduct(py::module_* module) {
   module->def(
       "open_product",
       [](const std::filesystem::path& file, const std::vector<std::string>& fits,
-         const std::optional<double>& unit, const std::string& encoding,
-         const std::vector<std::string>& apart, const std::vector<std::string>& rigid, bool cache,
-         double time_limit, const py::object& progress) {
+         const py::object& unit, const std::string& encoding, const std::vector<std::string>& apart,
+         const std::vector<std::string>& rigid, bool cache, const py::object& time_limit,
+         const py::object& progress) {
         py::list diagnostics;
         auto product = py::cast(Open(file, fits, unit, encoding, apart, rigid, cache, time_limit,
                                      progress, &diagnostics));
@@ -217,7 +222,7 @@ void DefineProduct(py::module_* module) {
         return product;
       },
       py::arg("file"), py::arg("fits"), py::arg("unit"), py::arg("encoding"), py::arg("apart"),
-      py::arg("rigid"), py::arg("cache"), py::arg("time_limit"), py::arg("progress"));
+      py::arg("rigid"), py::arg("cache").noconvert(), py::arg("time_limit"), py::arg("progress"));
 }
 
 }  // namespace hvas::python

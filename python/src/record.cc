@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "bindings.h"
+#include "arguments.h"
 #include "evidence/session_data.h"
 
 namespace hvas::python {
@@ -19,14 +19,12 @@ class PythonRecord {
   [[nodiscard]] std::int64_t tick_count() const { return reader_.tick_count(); }
 
   /** All numbers of all ticks, by the name of the column: those of the exports. */
-  py::dict Ticks(std::int64_t every) {
-    if (every < 1) {
-      throw py::value_error("every is 1 or more");
-    }
+  py::dict Ticks(const py::object& every) {
+    constexpr std::int64_t kMostEvery = 1'000'000'000;  // More than a record has: a choice.
     const auto columns = evidence::TickColumns();
     std::vector<std::vector<double>> values(columns.size());
     evidence::Selection selection;
-    selection.every = every;
+    selection.every = ToInteger("every", every, 1, kMostEvery);
     const auto read = [&] {
       const py::gil_scoped_release unlocked;
       return evidence::ForEachSelected(&reader_, selection, [&](const record::TickRecord& tick) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "arguments.h"
 #include "bindings.h"
 #include "evidence/picture.h"
 
@@ -76,12 +77,12 @@ py::dict ListGaps(const ModelHandle& handle) {
 }
 
 std::unique_ptr<ModelHandle> Prepare(const std::shared_ptr<product::Product>& product,
-                                     std::uint64_t seed, const std::string& base,
+                                     const py::object& seed, const std::string& base,
                                      const std::vector<std::string>& first_parts, bool is_cached,
                                      const py::object& progress) {
   std::stop_source stop;
   assembly::PrepareOptions options;
-  options.seed = seed;
+  options.seed = ToSeed("seed", seed);
   options.base = base;
   options.first_parts = first_parts;
   options.progress = MakeProgress(progress, &stop);
@@ -100,19 +101,18 @@ std::unique_ptr<ModelHandle> Prepare(const std::shared_ptr<product::Product>& pr
   return handle;
 }
 
-std::unique_ptr<ModelHandle> DrawSizes(const ModelHandle& handle, std::uint64_t seed) {
+std::unique_ptr<ModelHandle> DrawSizes(const ModelHandle& handle, const py::object& seed) {
   Diagnostics found;
   auto drawn = std::make_unique<ModelHandle>();
-  drawn->model = simulation::DrawSizes(*handle.model, seed, handle.model->pairs, &found);
+  drawn->model =
+      simulation::DrawSizes(*handle.model, ToSeed("seed", seed), handle.model->pairs, &found);
   drawn->diagnostics = found.items();
   return drawn;
 }
 
-std::unique_ptr<ModelHandle> StateFriction(const ModelHandle& handle, double friction) {
-  constexpr double kMost = 2;  // As a side file may state it.
-  if (!(friction >= 0 && friction <= kMost)) {
-    throw py::value_error("friction is a coefficient of 0 to 2");
-  }
+std::unique_ptr<ModelHandle> StateFriction(const ModelHandle& handle,
+                                           const py::object& friction_object) {
+  const double friction = ToNumber("friction", friction_object, kFriction);
   const auto product = std::make_shared<product::Product>(*handle.model->product);
   const std::size_t count = product->occurrences.size();
   for (std::size_t a = 0; a < count; ++a) {
@@ -134,11 +134,12 @@ std::unique_ptr<ModelHandle> StateFriction(const ModelHandle& handle, double fri
   return stated;
 }
 
-py::list Plan(const ModelHandle& handle, std::size_t orders,
+py::list Plan(const ModelHandle& handle, const py::object& orders,
               const std::vector<std::pair<std::string, std::string>>& before,
-              const std::map<std::string, double>& weights) {
+              const std::map<std::string, py::object>& weights) {
+  constexpr std::int64_t kMostOrders = 1000;  // As `hvas plan --orders` has it.
   assembly::PlanOptions options;
-  options.most_orders = orders;
+  options.most_orders = static_cast<std::size_t>(ToInteger("orders", orders, 1, kMostOrders));
   options.before = before;
   const std::map<std::string, double*> known{
       {"turn", &options.weights.turn},
@@ -158,7 +159,7 @@ py::list Plan(const ModelHandle& handle, std::size_t orders,
       }
       throw py::value_error(fmt::format("no weight is called '{}'; there are {}", name, names));
     }
-    *weight->second = value;
+    *weight->second = ToNumber(fmt::format("weights['{}']", name).c_str(), value, {0, kMostWeight});
   }
   auto found = [&] {
     const py::gil_scoped_release unlocked;
@@ -190,19 +191,19 @@ py::object Describe(const simulation::PartResult& part, const Model& model) {
                py::arg("deepest") = part.deepest, py::arg("arrival") = part.arrival));
 }
 
-py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
+py::object Assemble(const ModelHandle& handle, const py::object& seed,
                     const std::vector<std::string>& devices, const std::string& condition,
-                    bool turns_threads, bool is_realtime, double limit_s,
+                    bool turns_threads, bool is_realtime, const py::object& limit_s,
                     const std::filesystem::path& record, bool is_replaced,
                     const py::object& on_part) {
   std::stop_source stop;
   assembly::RunOptions options;
-  options.seed = seed;
+  options.seed = ToSeed("seed", seed);
   options.devices = devices;
   options.condition = ToCondition(condition);
   options.guidance.threads_turn = turns_threads;
   options.is_realtime = is_realtime;
-  options.limit_s = limit_s;
+  options.limit_s = ToNumber("limit_s", limit_s, {0, kMostTime});
   options.record = record;
   options.is_record_replaced = is_replaced;
   options.stop = stop.get_token();
@@ -238,14 +239,15 @@ py::object Assemble(const ModelHandle& handle, std::uint64_t seed,
 }
 
 /** The parts that are in their places and in the hand, drawn without a screen. */
-py::array Draw(const SteppedRun& run, int width, int height, const std::array<double, 3>& to_eye) {
-  constexpr int kMostPixels = 4096;
-  if (width < 1 || height < 1 || width > kMostPixels || height > kMostPixels) {
-    throw py::value_error("a picture has 1 to " + std::to_string(kMostPixels) + " pixels a side");
-  }
-  const Vec3 eye(to_eye[0], to_eye[1], to_eye[2]);
-  if (!eye.allFinite() || std::hypot(eye.x(), eye.y()) < 1e-3 * std::abs(eye.z())) {
-    throw py::value_error("the direction to the eye is not to be vertical");
+py::array Draw(const SteppedRun& run, const py::object& width_object,
+               const py::object& height_object, const py::object& to_eye) {
+  constexpr std::int64_t kMostPixels = 4096;
+  const auto width = static_cast<int>(ToInteger("width", width_object, 1, kMostPixels));
+  const auto height = static_cast<int>(ToInteger("height", height_object, 1, kMostPixels));
+  const Vec3 eye = ToVector("to_eye", to_eye, {-kMostLength, kMostLength});
+  const double level = std::hypot(eye.x(), eye.y());
+  if (!(level > 0) || level < 1e-3 * std::abs(eye.z())) {
+    throw py::value_error("to_eye is the direction to the eye, which is not to be vertical");
   }
   std::vector<std::uint8_t> pixels;
   {
@@ -276,47 +278,42 @@ py::array Draw(const SteppedRun& run, int width, int height, const std::array<do
 /** A run that Python steps: the rows are views of what the run keeps. */
 class PythonRun {
  public:
-  PythonRun(const ModelHandle& handle, std::size_t step, const py::object& start,
+  PythonRun(const ModelHandle& handle, const py::object& step, const py::object& start,
             const std::string& condition, bool has_contact_in_holes, bool turns_threads,
-            double stiffness, double damping, double turn_stiffness, double turn_damping,
-            double rate_hz)
+            const py::object& stiffness, const py::object& damping,
+            const py::object& turn_stiffness, const py::object& turn_damping,
+            const py::object& rate_hz)
       : model_(handle.model) {
     assembly::SteppedOptions options;
-    options.step = step;
+    options.step = ToIndex("step", step, model_->sequence.steps.size());
     if (!start.is_none()) {
-      options.X_WB_start = ToPose(start);
+      options.X_WB_start = ToPose("start", start);
     }
     options.condition = ToCondition(condition);
     options.contact_in_holes = has_contact_in_holes;
     options.threads_turn = turns_threads;
-    options.arm.stiffness = stiffness;
-    options.arm.damping = damping;
-    options.arm.turn_stiffness = turn_stiffness;
-    options.arm.turn_damping = turn_damping;
-    options.rate_hz = rate_hz;
+    options.arm.stiffness = ToNumber("stiffness", stiffness, kImpedance);
+    options.arm.damping = ToNumber("damping", damping, kImpedance);
+    options.arm.turn_stiffness = ToNumber("turn_stiffness", turn_stiffness, kImpedance);
+    options.arm.turn_damping = ToNumber("turn_damping", turn_damping, kImpedance);
+    options.rate_hz = ToNumber("rate_hz", rate_hz, {1000, 8000});
     run_ = Take(SteppedRun::Create(model_, options));
     reference_.X_WR = HandPose();
     reference_.is_gripping = true;
   }
 
   static py::array Step(const py::object& self, const py::object& pose, const py::object& force,
-                        std::size_t ticks, bool grip) {
+                        const py::object& ticks_object, bool grip) {
     auto& run = self.cast<PythonRun&>();
-    if (ticks < 1 || ticks > kMostTicks) {
-      throw py::value_error("ticks are 1 to " + std::to_string(kMostTicks) + " a call");
-    }
+    const auto ticks = static_cast<std::size_t>(ToInteger("ticks", ticks_object, 1, kMostTicks));
+    simulation::HandReference reference = run.reference_;
     if (!pose.is_none()) {  // Of the part; the hand keeps its grip.
-      run.reference_.X_WR = ToPose(pose) * run.run_->X_HB().Inverse();
+      reference.X_WR = ToPose("pose", pose) * run.run_->X_HB().Inverse();
     }
-    run.reference_.f_W = Vec3::Zero();
-    if (!force.is_none()) {
-      const auto f = py::cast<std::array<double, 3>>(force);
-      run.reference_.f_W = Vec3(f[0], f[1], f[2]);
-      if (!run.reference_.f_W.allFinite()) {
-        throw py::value_error("the force is not finite");
-      }
-    }
-    run.reference_.is_gripping = grip;
+    reference.f_W =
+        force.is_none() ? Vec3(Vec3::Zero()) : ToVector("force", force, {-kMostForce, kMostForce});
+    reference.is_gripping = grip;
+    run.reference_ = reference;  // Only now: a refused call changes nothing.
     {
       const py::gil_scoped_release unlocked;
       run.rows_ = run.run_->Step(run.reference_, ticks);
@@ -361,7 +358,7 @@ class PythonRun {
                      {static_cast<py::ssize_t>(sizeof(Row))}, rows.data(), owner);
   }
 
-  static constexpr std::size_t kMostTicks = 1'000'000;  // A quarter of a GB of rows: a choice.
+  static constexpr std::int64_t kMostTicks = 1'000'000;  // A quarter of a GB of rows: a choice.
 
   ModelPtr model_;
   std::unique_ptr<SteppedRun> run_;
@@ -381,13 +378,14 @@ void DefineModel(py::module_* module) {
            "The same model with this Coulomb coefficient, 0 to 2, in all contacts and fits.")
       .def("plan", &Plan, py::arg("orders") = 5,
            py::arg("before") = std::vector<std::pair<std::string, std::string>>(),
-           py::arg("weights") = std::map<std::string, double>(),
+           py::arg("weights") = std::map<std::string, py::object>(),
            "Orders of assembly of low cost. Weights: turn, direction_change, tool_change, loose, "
            "cramped, reach, force, hand_time.")
       .def("assemble", &Assemble, py::arg("seed") = 1,
            py::arg("devices") = std::vector<std::string>{""}, py::arg("condition") = "hybrid",
-           py::arg("threads_turn") = false, py::arg("realtime") = false, py::arg("limit_s") = 0.0,
-           py::arg("record") = "", py::arg("replace") = false, py::arg("on_part") = py::none(),
+           py::arg("threads_turn").noconvert() = false, py::arg("realtime").noconvert() = false,
+           py::arg("limit_s") = 0.0, py::arg("record") = "", py::arg("replace").noconvert() = false,
+           py::arg("on_part") = py::none(),
            "Has a simulated person, or the user of a device, put every part in; in virtual time "
            "unless realtime. threads_turn: screws and nuts go in by turning, and are tightened. "
            "on_part is called with each hvas.types.PartResult.")
@@ -396,25 +394,26 @@ void DefineModel(py::module_* module) {
                std::to_string(handle.model->sequence.steps.size()) + " steps>";
       });
   module->def("prepare", &Prepare, py::arg("product"), py::arg("seed"), py::arg("base"),
-              py::arg("first_parts"), py::arg("cache"), py::arg("progress"));
+              py::arg("first_parts"), py::arg("cache").noconvert(), py::arg("progress"));
 }
 
 void DefineStep(py::class_<PythonRun>* run) {
   const simulation::PersonOptions arm;
-  run->def(py::init<const ModelHandle&, std::size_t, const py::object&, const std::string&, bool,
-                    bool, double, double, double, double, double>(),
+  using Object = const py::object&;
+  run->def(py::init<const ModelHandle&, Object, Object, const std::string&, bool, bool, Object,
+                    Object, Object, Object, Object>(),
            py::arg("model"), py::arg("step") = 1, py::arg("start") = py::none(),
-           py::arg("condition") = "hybrid", py::arg("contact_in_holes") = false,
-           py::arg("threads_turn") = false, py::arg("stiffness") = arm.stiffness,
+           py::arg("condition") = "hybrid", py::arg("contact_in_holes").noconvert() = false,
+           py::arg("threads_turn").noconvert() = false, py::arg("stiffness") = arm.stiffness,
            py::arg("damping") = arm.damping, py::arg("turn_stiffness") = arm.turn_stiffness,
            py::arg("turn_damping") = arm.turn_damping, py::arg("rate_hz") = 1000.0)
       .def(
           "step",
           [](const py::object& self, const py::object& pose, const py::object& force,
-             std::size_t ticks,
+             const py::object& ticks,
              bool grip) { return PythonRun::Step(self, pose, force, ticks, grip); },
           py::arg("pose") = py::none(), py::arg("force") = py::none(), py::arg("ticks") = 1,
-          py::arg("grip") = true,
+          py::arg("grip").noconvert() = true,
           "Runs ticks, without the interpreter's lock.\n\n"
           "Args:\n"
           "    pose: Where the hand leads the part to; None: as before.\n"
@@ -458,9 +457,8 @@ void DefineState(py::class_<PythonRun>* run) {
       .def_property_readonly("poses", &PythonRun::ListPoses)
       .def(
           "picture",
-          [](const PythonRun& run, int width, int height, const std::array<double, 3>& to_eye) {
-            return Draw(run.run(), width, height, to_eye);
-          },
+          [](const PythonRun& run, const py::object& width, const py::object& height,
+             const py::object& to_eye) { return Draw(run.run(), width, height, to_eye); },
           py::arg("width") = 320, py::arg("height") = 240,
           py::arg("to_eye") = std::array<double, 3>{0.5, -0.7, 0.5},
           "Array of height x width x 4 (red, green, blue, opacity): what is in its place and in "

@@ -23,6 +23,7 @@
 #include "app/fit/fit.h"
 #include "app/licences.h"
 #include "app/manual.h"
+#include "app/output/number_range.h"
 #include "app/output/report_failure.h"
 #include "app/output/terminal.h"
 #include "app/output/text_layout.h"
@@ -119,6 +120,10 @@ std::string Rephrase(const std::string& what) {
                          rest.substr(equals + 3));
     }
   }
+  constexpr std::string_view kNeeds = ": needs ";
+  if (const std::size_t at = what.find(kNeeds); at != std::string::npos) {
+    return what.substr(0, at) + what.substr(at + 1);
+  }
   constexpr std::string_view kRequired = " is required";
   if (what.ends_with(kRequired)) {
     const std::string name = what.substr(0, what.size() - kRequired.size());
@@ -196,6 +201,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(int* status) {
   AddManual(app.get(), status);
   AddLicences(app.get(), status);
   SetGroups(app.get());
+  CheckNumbers(app.get());
   app->footer(
       "Examples:\n"
       "  hvas inspect pump.step              show parts, features, mates and fits\n"

@@ -58,7 +58,7 @@ void DescribeType(const CLI::Option& option, OptionHelp* help, std::vector<std::
     std::string range = check.substr(in + 4, check.find(']', in) - in - 4);
     range.replace(range.find(" - "), 3, " to ");
     notes->push_back(range);
-  } else if (!check.empty() && check != "C") {  // Its description has the unit.
+  } else if (!check.empty()) {
     std::string text = check;
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -1,14 +1,18 @@
 #include "campaign/campaign_folder.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <span>
+#include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/digest.h"
+#include "base/file_lock.h"
 #include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "mates/side_file.h"
@@ -35,6 +39,49 @@ Result<void> AddFile(const std::filesystem::path& file, Digest* digest) {
   }
   digest->AddText(*bytes);
   return {};
+}
+
+constexpr const char* kLockFile = "campaign.lock";
+
+/** Whether the folder is new: it has nothing but what a program that is making it, or was killed
+ while it did, has put there. Such a program has its lock file there until it is done. */
+bool IsNew(const std::filesystem::path& path) {
+  std::error_code failed;
+  const bool has_lock = std::filesystem::exists(path / kLockFile, failed);
+  for (const auto& entry : std::filesystem::directory_iterator(path, failed)) {
+    const std::string name = entry.path().filename().string();
+    // Files that WriteAtomically() has not finished have six more letters.
+    const bool is_own =
+        name == kLockFile || name.starts_with(kPlanCopy) || name.starts_with(kFolderFile);
+    if (!has_lock || !is_own) {
+      return false;
+    }
+  }
+  return !failed;
+}
+
+/** Locks the making of a folder, which takes some milliseconds: of two programs that begin at once,
+ one makes it, and the other one finds it made. */
+Result<Descriptor> LockMaking(const std::filesystem::path& path) {
+  // Looked for a hundred times a second, up to 10 s for disks of a network: choices.
+  constexpr std::chrono::milliseconds kPeriod{10};
+  constexpr int kTries = 1000;
+  int error = 0;
+  for (int i = 0; i < kTries; ++i) {
+    Descriptor file = OpenLocked(path / kLockFile, 0666, &error);
+    if (file.is_open()) {
+      return file;
+    }
+    if (error != EWOULDBLOCK) {
+      return Fail(ErrorCode::kInvalid,
+                  "the folder cannot be written: " +
+                      std::error_code(error, std::generic_category()).message(),
+                  path.string(), "check the path and its permissions");
+    }
+    std::this_thread::sleep_for(kPeriod);
+  }
+  return Fail(ErrorCode::kInvalid, "another program is making this folder", path.string(),
+              "wait until it runs, or choose another folder with --folder");
 }
 
 Unexpected FailFolder(const std::filesystem::path& file, const std::string& what) {
@@ -71,32 +118,28 @@ Result<CampaignFolder> CampaignFolder::Make(const std::filesystem::path& path, c
     return Unexpected(inputs.error());
   }
   std::error_code failed;
-  if (std::filesystem::exists(path / kFolderFile, failed)) {
-    auto folder = Open(path);
-    if (!folder) {
-      return folder;
-    }
-    const auto same = folder->CheckInputs(program);
-    if (!same) {
-      return Unexpected(same.error());
-    }
-    if (folder->inputs_ != *inputs) {
-      return Fail(ErrorCode::kInvalid,
-                  fmt::format("the folder has the results of another plan, \"{}\", or of one that "
-                              "was changed since",
-                              folder->plan_.id),
-                  path.string(), "choose another folder with --folder");
-    }
-    return folder;
-  }
-  if (std::filesystem::exists(path, failed) && !std::filesystem::is_empty(path, failed)) {
-    return Fail(ErrorCode::kInvalid, "the folder is not empty, and has no campaign", path.string(),
-                "choose another folder with --folder");
-  }
   std::filesystem::create_directories(path, failed);
   if (failed) {
     return Fail(ErrorCode::kInvalid, "the folder cannot be made: " + failed.message(),
                 path.string(), "check the path and its permissions");
+  }
+  const bool is_new = IsNew(path);
+  // The folder's file is written last, before the lock file goes: looked for after the others, it
+  // is there when another program has made the folder meanwhile.
+  if (std::filesystem::exists(path / kFolderFile, failed)) {
+    return OpenSame(path, *inputs, program);
+  }
+  if (!is_new) {
+    return Fail(ErrorCode::kInvalid, "the folder is not empty, and has no campaign", path.string(),
+                "choose another folder with --folder");
+  }
+  const auto lock = LockMaking(path);
+  if (!lock) {
+    return Unexpected(lock.error());
+  }
+  if (std::filesystem::exists(path / kFolderFile, failed)) {
+    std::filesystem::remove(path / kLockFile, failed);
+    return OpenSame(path, *inputs, program);
   }
   const Json json{{"schema", kFolderSchema},
                   {"id", plan.id},
@@ -107,7 +150,32 @@ Result<CampaignFolder> CampaignFolder::Make(const std::filesystem::path& path, c
                   {"shards", plan.CountShards()}};
   auto written = WriteAtomically(path / kPlanCopy, plan.text);
   written = written ? WriteAtomically(path / kFolderFile, json.dump(2) + "\n") : written;
-  return written ? Open(path) : Unexpected(written.error());
+  if (!written) {
+    return Unexpected(written.error());
+  }
+  std::filesystem::remove(path / kLockFile, failed);
+  return Open(path);
+}
+
+Result<CampaignFolder> CampaignFolder::OpenSame(const std::filesystem::path& path,
+                                                const std::string& inputs,
+                                                const std::string& program) {
+  auto folder = Open(path);
+  if (!folder) {
+    return folder;
+  }
+  const auto same = folder->CheckInputs(program);
+  if (!same) {
+    return Unexpected(same.error());
+  }
+  if (folder->inputs_ != inputs) {
+    return Fail(ErrorCode::kInvalid,
+                fmt::format("the folder has the results of another plan, \"{}\", or of one that "
+                            "was changed since",
+                            folder->plan_.id),
+                path.string(), "choose another folder with --folder");
+  }
+  return folder;
 }
 
 Result<CampaignFolder> CampaignFolder::Open(const std::filesystem::path& path) {

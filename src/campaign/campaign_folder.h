@@ -22,7 +22,8 @@ namespace hvas::campaign {
  Several processes and machines may use one folder at a time, as each file is written whole. */
 class CampaignFolder {
  public:
-  /** Makes a folder for a plan, or opens the one that is there. Errors: those of DigestInputs;
+  /** Makes a folder for a plan, or opens the one that is there. Of several programs that begin at
+   once, one makes it, and the others open it. Errors: those of DigestInputs;
    kInvalid where the folder is that of another plan, product or program, or is no folder of a
    campaign and not empty; those of WriteAtomically. */
   [[nodiscard]] static Result<CampaignFolder> Make(const std::filesystem::path& path,
@@ -52,6 +53,11 @@ class CampaignFolder {
   [[nodiscard]] std::vector<std::int64_t> ListMissing() const;
 
  private:
+  /** Opens a folder that has to be of these inputs. */
+  [[nodiscard]] static Result<CampaignFolder> OpenSame(const std::filesystem::path& path,
+                                                       const std::string& inputs,
+                                                       const std::string& program);
+
   Plan plan_;
   std::filesystem::path path_;
   std::string inputs_;

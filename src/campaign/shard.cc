@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"
+#include "base/regular_file.h"
 #include "campaign/row_table.h"
 #include "record/database.h"
 
@@ -123,6 +124,9 @@ Result<std::vector<RunResult>> ReadShard(const std::filesystem::path& file, cons
   if (!std::filesystem::exists(file, failed)) {
     return Fail(ErrorCode::kNotFound, "the shard is not there", file.string(),
                 "run the campaign or the shard");
+  }
+  if (const auto checked = CheckRegularFile(file); !checked) {
+    return FailDamaged(file, checked.error().message);
   }
   auto database = record::Database::Open(file, record::Database::Mode::kReadOnly);
   if (!database) {

@@ -1,14 +1,20 @@
 #include "campaign/table_file.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <optional>
 #include <system_error>
 #include <utility>
+
+#include "base/file_lock.h"
 
 namespace hvas::campaign {
 
 struct TableFile::State {
   std::filesystem::path file;
   std::filesystem::path unfinished;
+  Descriptor claim;  // The unfinished file, locked: no other program writes to it.
   std::optional<record::Database> database;
   std::optional<RowTable> rows;  // Goes before the database.
 };
@@ -44,8 +50,18 @@ Result<TableFile> TableFile::Create(const std::filesystem::path& file) {
   auto state = std::make_unique<State>();
   state->file = file;
   state->unfinished = file.string() + ".unfinished";
-  std::error_code failed;
-  std::filesystem::remove(state->unfinished, failed);
+  int error = 0;
+  state->claim = OpenLocked(state->unfinished, 0666, &error);
+  if (error == EWOULDBLOCK) {
+    return Fail(ErrorCode::kInvalid, "another program is writing this table", file.string(),
+                "choose another name with --table, or wait for that program");
+  }
+  if (error != 0 || ::ftruncate(state->claim.value(), 0) != 0) {
+    error = error != 0 ? error : errno;
+    return Fail(error == ENOENT ? ErrorCode::kNotFound : ErrorCode::kInvalid,
+                "cannot be written: " + std::error_code(error, std::generic_category()).message(),
+                state->unfinished.string(), "check the path and its permissions");
+  }
   auto database = record::Database::Open(state->unfinished, record::Database::Mode::kCreate);
   if (!database) {
     return Unexpected(database.error());
@@ -83,6 +99,7 @@ Result<void> TableFile::Finish() {
     return Fail(ErrorCode::kInvalid, "cannot be written: " + failed.message(),
                 state_->file.string(), "choose another name");
   }
+  state_.reset();  // Another program may have begun an unfinished file of this name by now.
   return {};
 }
 

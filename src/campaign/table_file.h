@@ -14,7 +14,8 @@ namespace hvas::campaign {
  own when it is finished; without that, nothing stays behind. */
 class TableFile {
  public:
-  /** Errors: kNotFound where the folder is not there or not writable. */
+  /** Errors: kNotFound where the folder is not there; kInvalid where it is not writable, or
+   another program is writing the same table. */
   [[nodiscard]] static Result<TableFile> Create(const std::filesystem::path& file);
 
   TableFile(TableFile&& other) noexcept;

@@ -11,7 +11,14 @@ OutputFile::OutputFile(std::filesystem::path file, std::filesystem::path working
       stream_(working_path_, std::ios::binary | std::ios::trunc) {}
 
 Result<OutputFile> OutputFile::Create(const std::filesystem::path& file) {
-  OutputFile output(file, file.string() + ".part");
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored)) {
+    return Fail(ErrorCode::kInvalid, "exists and is not a file", file.string(),
+                "choose another name");
+  }
+  const std::filesystem::path working_path = file.string() + ".part";
+  std::filesystem::remove(working_path, ignored);  // A pipe of this name would be waited for.
+  OutputFile output(file, working_path);
   if (!output.stream_) {
     return Fail(ErrorCode::kNotFound, "the file cannot be written", file.string(),
                 "check that the folder exists and is writable");

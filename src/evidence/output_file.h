@@ -13,7 +13,8 @@ namespace hvas::evidence {
 /** A large file that is written piece by piece beside its place, and put there when it is whole. */
 class OutputFile {
  public:
-  /** Errors: kNotFound where it cannot be written. */
+  /** Errors: kNotFound where it cannot be written; kInvalid where something else than a file has
+   this name. */
   static Result<OutputFile> Create(const std::filesystem::path& file);
 
   OutputFile(OutputFile&&) = default;

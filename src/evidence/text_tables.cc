@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/csv_row.h"
 #include "base/parse_json.h"
 #include "evidence/given_parts.h"
 #include "evidence/output_file.h"
@@ -92,20 +93,16 @@ Result<void> WriteCsv(record::Reader* reader, const Selection& selection,
   if (!output) {
     return Unexpected(output.error());
   }
-  std::string line;
+  CsvRow row;
   for (const Column& column : TickColumns()) {
-    line += (line.empty() ? "" : ",") + std::string(column.name);
+    row.Text(column.name);
   }
-  output->Write(line + "\n");
+  output->Write(row.End());
   const Result<void> done = ForEachSelected(reader, selection, [&](const TickRecord& tick) {
-    line.clear();
     for (const Column& column : TickColumns()) {
-      const double value = column.get(tick);
-      // What is not finite is an empty cell, which spreadsheets take for none.
-      line += std::isfinite(value) ? fmt::format("{},", value) : ",";
+      row.Number(column.get(tick));
     }
-    line.back() = '\n';
-    output->Write(line);
+    output->Write(row.End());
   });
   return done ? output->Finish() : done;
 }

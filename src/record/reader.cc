@@ -59,6 +59,17 @@ Result<Reader> Reader::Open(const std::filesystem::path& path) {
 }
 
 Result<void> Reader::CheckKind() {
+  // What a writer leaves that is killed before its first transaction ends, at whatever moment: an
+  // empty file, or a database without tables.
+  const Result<std::int64_t> tables = database_.QueryInt("SELECT count(*) FROM sqlite_master");
+  if (!tables) {
+    return Unexpected(tables.error());
+  }
+  if (*tables == 0) {
+    return Fail(ErrorCode::kUnreadable,
+                "the recording ended before its first second, and nothing of it was written",
+                path_.string(), "record the session again");
+  }
   const Result<std::int64_t> id = database_.QueryInt("PRAGMA application_id");
   if (!id) {
     return Unexpected(id.error());
@@ -66,12 +77,6 @@ Result<void> Reader::CheckKind() {
   if (*id != kApplicationId) {
     return Fail(ErrorCode::kUnreadable, "this is not a session record", path_.string(),
                 "give a file that HVAS recorded");
-  }
-  const Result<std::int64_t> tables =
-      database_.QueryInt("SELECT count(*) FROM sqlite_master WHERE name = 'schema_version'");
-  if (tables && *tables == 0) {
-    return Fail(ErrorCode::kUnreadable, "the record is empty: its writer was ended before it began",
-                path_.string(), "record the session again");
   }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {

@@ -1,5 +1,6 @@
 #include "record/recorder.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <condition_variable>
@@ -121,8 +122,7 @@ struct Recorder::Impl {
         is_last = is_stopping;
       }
       const std::scoped_lock lock(mutex);
-      Drain();
-      if (MonotonicNs() - flushed_ns >= kFlushPeriodNs) {
+      if (Drain() || MonotonicNs() - flushed_ns >= kFlushPeriodNs) {
         sink.Commit();
         flushed_ns = MonotonicNs();
       }
@@ -130,8 +130,10 @@ struct Recorder::Impl {
   }
 
   // Takes the ticks before the items, and writes them after: a command that one of these ticks
-  // obeyed is among these items or is written already.
-  void Drain() {
+  // obeyed is among these items or is written already. Returns whether an attachment was among
+  // them: the product, without which the record is of little use, is not to wait for the next
+  // commit.
+  bool Drain() {
     ticks.clear();
     TickRecord tick;
     while (ticks.size() < ring->capacity() && ring->TryPop(&tick)) {
@@ -150,6 +152,8 @@ struct Recorder::Impl {
     for (const TickRecord& one : ticks) {
       sink.Add(one);
     }
+    return std::any_of(taken.begin(), taken.end(),
+                       [](const Item& item) { return std::holds_alternative<Attachment>(item); });
   }
 
   void Add(Item item) {

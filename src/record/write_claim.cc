@@ -18,9 +18,11 @@ namespace {
 
 constexpr mode_t kOwnerOnly = S_IRUSR | S_IWUSR;
 
+/** Whether it is a record, or an empty database: what is left of a writer that was killed early. */
 bool IsRecord(const std::filesystem::path& path) {
   Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
-  return database && database->QueryInt("PRAGMA application_id").value_or(0) == kApplicationId;
+  return database && (database->QueryInt("PRAGMA application_id").value_or(0) == kApplicationId ||
+                      database->QueryInt("SELECT count(*) FROM sqlite_master").value_or(1) == 0);
 }
 
 /** Whether another program, or another recorder of this one, has the lock. A file system that has

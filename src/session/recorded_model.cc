@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/digest.h"
 #include "base/parse_json.h"
 #include "product/accessories.h"
@@ -196,13 +198,32 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
   AttachDeformables(model.deformables, recorder);
 }
 
-Result<product::Product> LoadProduct(record::Reader* reader) {
-  const auto bytes = reader->ReadAttachment(kProductAttachment);
-  if (!bytes && bytes.error().code == ErrorCode::kNotFound) {
-    return Fail(ErrorCode::kUnsupported,
-                "the record contains no product; it was written by an older version of HVAS",
+namespace {
+
+/** Reads what AttachModel() attaches at the beginning of each recording, and says why it is not
+ there. */
+Result<std::vector<std::byte>> ReadOwnAttachment(record::Reader* reader, const char* name) {
+  auto bytes = reader->ReadAttachment(name);
+  if (bytes || bytes.error().code != ErrorCode::kNotFound) {
+    return bytes;
+  }
+  constexpr int kFirstWithAttachments = 3;  // Layout version of records.
+  if (reader->schema() >= kFirstWithAttachments && !reader->is_complete()) {
+    return Fail(ErrorCode::kUnreadable,
+                "the recording ended before its first second, and its product was not written",
                 reader->path().string(), "record the session again");
   }
+  return Fail(ErrorCode::kUnsupported,
+              reader->schema() < kFirstWithAttachments
+                  ? "the record contains no product; it was written by an older version of HVAS"
+                  : fmt::format("the record was written without a product: it has no \"{}\"", name),
+              reader->path().string(), "record the session again");
+}
+
+}  // namespace
+
+Result<product::Product> LoadProduct(record::Reader* reader) {
+  const auto bytes = ReadOwnAttachment(reader, kProductAttachment);
   if (!bytes) {
     return Unexpected(bytes.error());
   }
@@ -229,26 +250,23 @@ Result<std::optional<product::Product>> FindProduct(record::Reader* reader) {
 
 namespace {
 
-Result<Json> ReadModelJson(record::Reader* reader) {
-  const auto bytes = reader->ReadAttachment(kModelAttachment);
-  if (!bytes) {
-    return Unexpected(bytes.error());
-  }
+Json ParseModelJson(const std::vector<std::byte>& bytes) {
   return ParseJson<Json>(
-      std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+      std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace
 
 Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(record::Reader* reader,
                                                                 const product::Product& product) {
-  const auto json = ReadModelJson(reader);
-  if (!json) {
-    return json.error().code == ErrorCode::kNotFound
+  const auto bytes = reader->ReadAttachment(kModelAttachment);
+  if (!bytes) {
+    return bytes.error().code == ErrorCode::kNotFound
                ? Result<std::vector<product::OccurrenceId>>({})
-               : Unexpected(json.error());
+               : Unexpected(bytes.error());
   }
-  JsonFields fields(*json);
+  const Json json = ParseModelJson(*bytes);
+  JsonFields fields(json);
   const auto steps = ParseSteps(fields.Array(kSteps), product.occurrences.size());
   if (!steps) {
     return Unexpected(steps.error());
@@ -281,11 +299,11 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   if (!product) {
     return Unexpected(product.error());
   }
-  const auto read = ReadModelJson(reader);
-  if (!read) {
-    return Unexpected(read.error());
+  const auto bytes = ReadOwnAttachment(reader, kModelAttachment);
+  if (!bytes) {
+    return Unexpected(bytes.error());
   }
-  const Json& json = *read;
+  const Json json = ParseModelJson(*bytes);
   JsonFields fields(json);
   std::string fingerprint;
   fields(kFingerprint, fingerprint);

@@ -1,5 +1,6 @@
 #include "studio/http_session.h"
 
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "base/error_name.h"
 #include "base/parse_json.h"
 #include "studio/event_json.h"
+#include "studio/header_value.h"
 #include "studio/json_fields.h"
 #include "studio/responses.h"
 #include "studio/socket_session.h"
@@ -43,6 +45,18 @@ beast::string_view ToBeast(std::string_view text) {
 template <typename Fields>
 std::string_view FieldOf(const Fields& fields, http::field name) {
   return ToView(fields[name]);
+}
+
+/** Whether a request announces a body that its kind has not: unread, the body would be taken for
+ the next request on the connection. A coding that is not chunked tells nobody where the body ends.
+ */
+bool HasBodyOutOfPlace(const http::request_parser<http::empty_body>& parser) {
+  const auto& request = parser.get();
+  const bool is_coded = request.count(http::field::transfer_encoding) > 0;
+  const bool has_body = is_coded || parser.content_length().value_or(0) > 0;
+  const bool is_upgrade = websocket::is_upgrade(request);
+  return request.method() == http::verb::post && !is_upgrade ? is_coded && !parser.chunked()
+                                                             : has_body;
 }
 
 /** Serves the requests of one connection, one after the other. */
@@ -117,6 +131,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     is_last_ = !request.keep_alive();
     connection_.SetIdle(false);
     visitor_.reset();
+    if (HasBodyOutOfPlace(*header_)) {
+      return Refuse(http::status::bad_request,
+                    {ErrorCode::kInvalid, "a request of this kind has no body", "", "send none"});
+    }
     const std::string_view origin = FieldOf(request, http::field::origin);
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
@@ -401,8 +419,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kNotFound, failed.message(), file.filename().string(), ""});
     }
     response.set(http::field::content_type, type);
-    response.set(http::field::content_disposition,
-                 fmt::format("attachment; filename=\"{}\"", file.filename().string()));
+    response.set(http::field::content_disposition, MakeAttachmentValue(file.filename().string()));
     Send(std::move(response));
   }
 
@@ -432,6 +449,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response.set("Cross-Origin-Resource-Policy", "same-origin");
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
+    for (auto field = response.begin(); field != response.end();) {
+      field = IsHeaderValue(ToView(field->value())) ? std::next(field) : response.erase(field);
+    }
     response.keep_alive(!is_refused_ && !is_last_);
     response.prepare_payload();
     const std::chrono::duration<double> long_enough(

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/digest.h"
+#include "base/file_lock.h"
 #include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "base/write_all.h"
@@ -207,6 +208,11 @@ Unexpected FailDamaged(const std::filesystem::path& file, int line) {
               "restore the file from a copy; only the last line may be incomplete");
 }
 
+Unexpected FailAsRunning(const std::filesystem::path& file) {
+  return Fail(ErrorCode::kInvalid, "another program runs the session of this participant",
+              file.string(), "end that program first");
+}
+
 Unexpected FailToAppend(const std::filesystem::path& file, int error) {
   return Fail(ErrorCode::kOutOfResource,
               fmt::format("the journal cannot be written: {}", std::strerror(error)), file.string(),
@@ -254,15 +260,16 @@ Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file) {
 Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHead& head,
                               bool is_synced) {
   // Journals are personal data: only this user may read them.
-  Journal journal(file, Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)),
-                  is_synced);
+  constexpr mode_t kOwnerOnly = 0600;
+  int error = 0;
+  Journal journal(file, OpenLocked(file, kOwnerOnly, &error), is_synced);
   const int descriptor = journal.file_.value();
-  if (!journal.file_.is_open()) {
-    return FailToAppend(file, errno);
+  if (error == EWOULDBLOCK) {
+    return FailAsRunning(file);
   }
-  if (TryLock(journal.file_) != 0) {
-    return Fail(ErrorCode::kInvalid, "another program runs the session of this participant",
-                file.string(), "end that program first");
+  if (error != 0) {
+    const auto checked = CheckRegularFile(file);
+    return checked ? FailToAppend(file, error) : Unexpected(checked.error());
   }
   auto old = ReadJournal(file);
   if (!old) {
@@ -286,6 +293,15 @@ Result<Journal> Journal::Open(const std::filesystem::path& file, const JournalHe
     }
   }
   return journal;
+}
+
+Result<Descriptor> LockJournal(const std::filesystem::path& file) {
+  auto opened = RegularFile::Open(file);
+  if (!opened) {
+    return Unexpected(opened.error());
+  }
+  Descriptor lock(::fcntl(opened->descriptor(), F_DUPFD_CLOEXEC, 0));
+  return TryLock(lock) == EWOULDBLOCK ? Result<Descriptor>(FailAsRunning(file)) : std::move(lock);
 }
 
 Result<void> Journal::Write(const std::string& line) {

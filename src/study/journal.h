@@ -61,6 +61,10 @@ struct ReadOnlyJournal {
   std::int64_t good_bytes{0};  ///< Size without an incomplete last line.
 };
 
+/** Locks a journal against a session, until the descriptor is closed. Errors: kInvalid where the
+ session of its participant is running; those of RegularFile::Open. */
+[[nodiscard]] Result<Descriptor> LockJournal(const std::filesystem::path& file);
+
 /** Reads a journal without changing the file. Errors: those of Journal::Open; kNotFound. */
 [[nodiscard]] Result<ReadOnlyJournal> ReadJournal(const std::filesystem::path& file);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/csv_row.h"
 #include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "base/units.h"
@@ -40,18 +41,6 @@ Result<void> MakeFolder(const fs::path& folder) {
     fs::permissions(folder, fs::perms::owner_all, failed);
   }
   return failed ? Result<void>(FailToWrite(folder, failed)) : Result<void>();
-}
-
-/** Formats a CSV cell, quoted where RFC 4180 requires it. */
-std::string Cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + "\"";
 }
 
 std::string PrintValue(const AnswerValue& value) {
@@ -193,7 +182,13 @@ Result<std::vector<fs::path>> StudyFolder::Delete(const std::string& id) const {
   std::error_code failed;
   std::vector<fs::path> files;
   const fs::path records = folder_ / "records" / id;
+  Descriptor lock;  // No session can begin while its data are being deleted.
   if (fs::exists(JournalFile(id), failed)) {
+    auto locked = LockJournal(JournalFile(id));
+    if (!locked) {
+      return Unexpected(locked.error());
+    }
+    lock = std::move(*locked);
     files.push_back(JournalFile(id));
   }
   for (const auto& entry : fs::directory_iterator(records, failed)) {
@@ -232,17 +227,35 @@ Result<void> ApplyAll(const std::vector<StudyEvent>& events, StudySession* sessi
 
 namespace {
 
-/** The columns of a pair. Clearances are of the diameter, as tolerances are, with the surface. */
-std::string FormatPair(const std::optional<TrialPair>& pair) {
+constexpr std::string_view kLineEnd = "\r\n";
+
+/** Adds the columns of a pair. Clearances are of the diameter, as tolerances are, with the surface.
+ */
+void AddPair(const std::optional<TrialPair>& pair, CsvRow* row) {
   if (!pair || pair->clearances.empty()) {
-    return ",,,,,";
+    row->Empty(5);
+    return;
   }
   const auto& s = pair->clearances;
   const auto [least, most] = std::minmax_element(s.begin(), s.end());
-  return fmt::format("{:.6f},{:.6f},{:.3f},{:.3f},{:.3f},", units::ToMm(pair->hole_diameter),
-                     units::ToMm(pair->shaft_diameter), 2 * units::ToUm(*least),
-                     units::ToUm(pair->hole_diameter - pair->shaft_diameter),
-                     2 * units::ToUm(*most));
+  row->Fixed(units::ToMm(pair->hole_diameter), 6)
+      .Fixed(units::ToMm(pair->shaft_diameter), 6)
+      .Fixed(2 * units::ToUm(*least), 3)
+      .Fixed(units::ToUm(pair->hole_diameter - pair->shaft_diameter), 3)
+      .Fixed(2 * units::ToUm(*most), 3);
+}
+
+/** Adds the result of a trial that has ended. */
+void AddResult(const TrialResult& result, CsvRow* row) {
+  if (!result.time) {
+    row->Empty(5);
+    return;
+  }
+  row->Number(*result.time)
+      .Whole(result.collisions)
+      .Number(result.peak_felt)
+      .Number(result.peak_true)
+      .Number(units::ToMm(result.insertion));
 }
 
 }  // namespace
@@ -256,18 +269,20 @@ std::string MakeTrialsCsv(const std::vector<Participant>& participants) {
     const StudySession& session = *participant.session;
     for (const DoneTrial& done : session.done()) {
       const PlannedTrial& planned = session.schedule()[done.index];
-      const TrialResult& r = done.result;
       const bool is_answered = !done.answer.empty();
       const bool is_right = done.answer == AnswerNameOf(session.ConditionOf(done.index));
-      csv += fmt::format("{},{},{},{},{},{},{},", participant.id, participant.is_simulated ? 1 : 0,
-                         session.BlockOf(done.index).id, session.ConditionOf(done.index).id,
-                         planned.repetition, done.index + 1,
-                         kOutcomes[static_cast<std::size_t>(r.outcome)]);
-      csv += r.time ? fmt::format("{},{},{},{},{},", *r.time, r.collisions, r.peak_felt,
-                                  r.peak_true, units::ToMm(r.insertion))
-                    : ",,,,,";
-      csv += FormatPair(r.pair);
-      csv += fmt::format("{},{}\r\n", Cell(done.answer), is_answered ? (is_right ? "1" : "0") : "");
+      CsvRow row;
+      row.Text(participant.id)
+          .Whole(participant.is_simulated ? 1 : 0)
+          .Text(session.BlockOf(done.index).id)
+          .Text(session.ConditionOf(done.index).id)
+          .Whole(planned.repetition)
+          .Whole(static_cast<std::int64_t>(done.index) + 1)
+          .Text(kOutcomes[static_cast<std::size_t>(done.result.outcome)]);
+      AddResult(done.result, &row);
+      AddPair(done.result.pair, &row);
+      row.Text(done.answer).Text(is_answered ? (is_right ? "1" : "0") : "");
+      csv += row.End(kLineEnd);
     }
   }
   return csv;
@@ -277,9 +292,13 @@ std::string MakeAnswersCsv(const std::vector<Participant>& participants) {
   std::string csv = "participant,simulated,question,after_trial,value\r\n";
   for (const Participant& participant : participants) {
     for (const GivenAnswer& answer : participant.session->answers()) {
-      csv += fmt::format("{},{},{},{},{}\r\n", participant.id, participant.is_simulated ? 1 : 0,
-                         answer.question, answer.trial ? fmt::format("{}", *answer.trial + 1) : "",
-                         Cell(PrintValue(answer.value)));
+      csv += CsvRow()
+                 .Text(participant.id)
+                 .Whole(participant.is_simulated ? 1 : 0)
+                 .Text(answer.question)
+                 .Text(answer.trial ? fmt::format("{}", *answer.trial + 1) : "")
+                 .Text(PrintValue(answer.value))
+                 .End(kLineEnd);
     }
   }
   return csv;

@@ -62,7 +62,8 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path RecordFile(const std::string& id, std::size_t trial) const;
 
   /** Deletes all data of a participant: journal, records, and the results made from all journals.
-   Errors: kNotFound when there are none. @returns the deleted files. */
+   Errors: kNotFound when there are none; kInvalid while the participant's session runs. @returns
+   the deleted files. */
   [[nodiscard]] Result<std::vector<std::filesystem::path>> Delete(const std::string& id) const;
 
  private:

@@ -12,6 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import codes  # noqa: E402
 import constants  # noqa: E402
 import doors  # noqa: E402
+import file_opens  # noqa: E402
 import layers  # noqa: E402
 import openings  # noqa: E402
 import pages  # noqa: E402
@@ -152,6 +153,31 @@ class PartLoops(unittest.TestCase):
             self.assertEqual(len(part_loops.check(root, {})), 1)
             self.assertEqual(part_loops.check(root, {("mates/a.cc", "parts"): "few"}), [])
             self.assertEqual(len(part_loops.check(root, {("mates/a.cc", "parts"): "few", ("mates/b.cc", "parts"): "gone"})), 1)
+
+
+class FileOpens(unittest.TestCase):
+    def lines(self, text):
+        return [number for number, _ in file_opens.find_opens(text)]
+
+    def test_each_way_to_open_a_file_is_caught_with_its_line(self):
+        text = ("std::ifstream a(file);\nstd::FILE* b = std::fopen(name, \"r\");\nint c = ::open(path.c_str(), O_RDONLY);\n"
+                "ReadRegularFile(file);\nsqlite3_open_v2(name, &d, 0, nullptr);\n::dlopen(file, 0);\nfs::copy_file(from, to);\n"
+                "std::ofstream(file) << 1;\n::openat(folder, name, 0);\nfopen(x, y);\n")
+        self.assertEqual(self.lines(text), [1, 2, 3, 5, 6, 7, 8, 9, 10])
+
+    def test_comments_texts_and_other_names_pass(self):
+        text = ("// std::ifstream waits for a pipe\n/** Opens with fopen(). */\n/* One of\n std::ifstream */\nReopen(file);\n"
+                "const char* text = \"fopen(\";\nFile::Open(path);\nif (opening.open()) {\n")
+        self.assertEqual(self.lines(text), [])
+
+    def test_place_that_is_not_in_the_list_is_caught_and_so_is_an_entry_that_is_of_no_use(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "src/base/other.cc"
+            source.parent.mkdir(parents=True)
+            source.write_text("\nstd::ifstream stream(file);\n")
+            problems = file_opens.check(pathlib.Path(folder))
+        self.assertIn("src/base/other.cc:2: opens a file beside base/regular_file.h: std::ifstream stream(file);", problems)
+        self.assertEqual(len(problems), 1 + len(file_opens.ALLOWED))
 
 
 class Constants(unittest.TestCase):

@@ -20,12 +20,14 @@
 #include "app/command_watch.h"
 #include "app/output/json_flag.h"
 #include "app/output/new_file.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/product/load_product.h"
 #include "app/recording/recorded_path.h"
 #include "base/atomic_file.h"
 #include "base/crash_note.h"
+#include "base/csv_row.h"
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "product/wall.h"
@@ -121,11 +123,18 @@ std::string MakeCsv(const TimedPath& path, const Vec3& p_BoBcm_B) {
   for (std::size_t i = 0; i < path.X_WB.size(); ++i) {
     const spatial::Pose& X_WB = path.X_WB[i];
     const Vec3 centre = X_WB * p_BoBcm_B;
-    const std::string time =
-        path.t_ns.empty() ? "" : fmt::format("{:.3f}", 1e-9 * static_cast<double>(path.t_ns[i]));
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", time, centre.x(), centre.y(),
-                       centre.z(), X_WB.p().x(), X_WB.p().y(), X_WB.p().z(), X_WB.q().w(),
-                       X_WB.q().x(), X_WB.q().y(), X_WB.q().z());
+    CsvRow row;
+    if (path.t_ns.empty()) {
+      row.Empty();
+    } else {
+      row.Fixed(1e-9 * static_cast<double>(path.t_ns[i]), 3);
+    }
+    for (const double number :
+         {centre.x(), centre.y(), centre.z(), X_WB.p().x(), X_WB.p().y(), X_WB.p().z(),
+          X_WB.q().w(), X_WB.q().x(), X_WB.q().y(), X_WB.q().z()}) {
+      row.Number(number);
+    }
+    csv += row.End();
   }
   return csv;
 }
@@ -320,22 +329,25 @@ void AddWays(CLI::App* command, PathOptions* options) {
   constexpr int kVector = 3;  // Coordinates.
   way->add_option("--translate", options->translate_mm, "Translation from its place: X,Y,Z [mm]")
       ->delimiter(',')
+      ->check(AnyNumber())
       ->expected(kVector);
   CLI::Option* rotate =
       way->add_option("--rotate", options->rotate_deg,
                       "Rotation about an axis: X,Y,Z of the direction, angle [deg]")
           ->delimiter(',')
+          ->check(AnyNumber())
           ->expected(kVector + 1);
   way->require_option(1);
   command
       ->add_option("--hold", options->hold,
                    "Number of the hold of this part, from 1; default: the last one")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->needs(record);
   command
       ->add_option("--about", options->about_mm,
                    "Point on the axis: X,Y,Z [mm]; default: the part's centre of mass")
       ->delimiter(',')
+      ->check(AnyNumber())
       ->expected(kVector)
       ->needs(rotate);
 }
@@ -348,7 +360,7 @@ void AddSwept(CLI::App* command, PathOptions* options) {
           "--resolution-mm", options->resolution_mm,
           "Cell size of the swept volume [mm]; default: a hundredth of its extent, or less where "
           "the part has thin walls")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->needs(swept);
 }
 

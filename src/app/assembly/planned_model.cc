@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "base/clock.h"
@@ -91,39 +92,47 @@ void AddOrderOptions(CLI::App* command, PlanCommandOptions* options) {
       ->expected(1, CLI::detail::expected_max_vector_size);
   simulation::OrderWeights& weights = options->plan.weights;
   command->add_option("--turn-cost", weights.turn, "Cost of turning the product")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--direction-cost", weights.direction_change,
                    "Cost of a part that comes from another direction than the one before it")
+      ->check(NotNegative())
       ->capture_default_str();
   command->add_option("--tool-cost", weights.tool_change, "Cost of a change of tool")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--loose-cost", weights.loose, "Cost of a part that nothing holds when it comes")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--cramped-cost", weights.cramped,
                    "Cost of a fastener that comes when parts stand where its tool turns")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--reach-cost", weights.reach,
                    "Cost of each metre by which the hand goes in among the parts that are there")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--force-cost", weights.force,
                    "Cost of each newton that the hand needs against a fit or a weight")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option(
           "--hand-time-cost", weights.hand_time,
           "Cost of each second that the hand takes, estimated by MODAPTS; it counts turns, "
           "changes, reach and force once more")
+      ->check(NotNegative())
       ->capture_default_str();
   command
       ->add_option("--time", options->time_s,
                    "End the search for orders after so many seconds; without it, the same file and "
                    "options give the same plan")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   command->add_option("--seed", options->run.seed, "Draws the actual sizes of the fits")
       ->capture_default_str();
 }

@@ -70,10 +70,11 @@ std::optional<Quat> ReadRotation(const Json& json) {
 Result<OccurrenceId> Find(const Product& product, const std::string& name) {
   std::uint32_t number = 0;
   const char* end = name.data() + name.size();
-  if (name.size() > 1 && name.front() == 'o' &&
-      std::from_chars(name.data() + 1, end, number).ptr == end &&
-      number < product.occurrences.size()) {
-    return OccurrenceId(number);
+  if (name.size() > 1 && name.front() == 'o') {
+    const auto [stop, error] = std::from_chars(name.data() + 1, end, number);
+    if (error == std::errc() && stop == end && number < product.occurrences.size()) {
+      return OccurrenceId(number);
+    }
   }
   return mates::FindOccurrence(product, name);
 }

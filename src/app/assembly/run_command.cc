@@ -1,7 +1,6 @@
 #include "app/assembly/run_command.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <utility>
@@ -270,13 +269,7 @@ void AddRunOptions(CLI::App* command, RunCommandOptions* options) {
   command
       ->add_option("--limit", options->run.limit_s,
                    "Stop after this session time [s]; default 0: 120 s for each part")
-      ->check([](const std::string& text) {
-        double limit_s = 0;
-        const char* end = text.data() + text.size();
-        const auto [rest, code] = std::from_chars(text.data(), end, limit_s);
-        const bool is_time = code == std::errc() && rest == end && limit_s >= 0 && limit_s <= 1e9;
-        return is_time ? std::string() : "must be a time in seconds, 0 or more";
-      });
+      ->check(CLI::Range(0.0, 1e9));
 }
 
 }  // namespace hvas::app

@@ -18,6 +18,7 @@
 #include "app/command_line.h"
 #include "app/end_watch.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
@@ -444,7 +445,7 @@ void AddPlay(CLI::App* group, int* status) {
       "play", "Assemble the product of one run with the whole haptic tick, and record it");
   const auto options = std::make_shared<CampaignOptions>();
   AddPlanArgument(command, options);
-  command->add_option("run", options->run, "Number of the run")->required();
+  command->add_option("run", options->run, "Number of the run")->check(NotNegative())->required();
   command->add_option("--record", options->record, "Record the session to this file");
   command->add_flag("--force", options->is_forced, "Replace an existing record");
   command->footer(

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cstdio>
 #include <limits>
-#include <memory>
 
 #include <csv.h>
 #include <fmt/format.h>
 
+#include "base/csv_row.h"
 #include "base/regular_file.h"
 
 namespace hvas::app {
@@ -24,7 +24,8 @@ struct Parsed {
 };
 
 void TakeCell(void* text, std::size_t size, void* data) {
-  static_cast<Parsed*>(data)->row.emplace_back(static_cast<const char*>(text), size);
+  static_cast<Parsed*>(data)->row.emplace_back(
+      ReadCsvCell(std::string_view(static_cast<const char*>(text), size)));
 }
 
 void TakeRow(int /*last_character*/, void* data) {
@@ -65,26 +66,6 @@ class LineCounter {
   bool is_open_{false};  // A row goes on in the next line, by quotes.
 };
 
-struct CloseFile {
-  void operator()(std::FILE* file) const {
-    if (file != stdin) {
-      std::fclose(file);
-    }
-  }
-};
-
-std::string Quoted(const std::string& cell) {
-  std::string out(2 * cell.size() + 2, '\0');
-  out.resize(csv_write(out.data(), out.size(), cell.data(), cell.size()));
-  return out;
-}
-
-bool NeedsQuotes(const std::string& cell, char delimiter) {
-  return cell.find_first_of("\"\r\n") != std::string::npos ||
-         cell.find(delimiter) != std::string::npos ||
-         (!cell.empty() && (cell.front() == ' ' || cell.back() == ' '));
-}
-
 /** Guesses the delimiter from the first line. */
 char GuessDelimiter(std::string_view text) {
   const std::string_view first = text.substr(0, text.find('\n'));
@@ -92,26 +73,31 @@ char GuessDelimiter(std::string_view text) {
   return has_semicolon && first.find(',') == std::string_view::npos ? ';' : ',';
 }
 
-/** Parses a file whose delimiter is guessed where it is kAnyDelimiter. */
-Result<Parsed> ParseFile(std::FILE* file, const std::string& name, char* delimiter) {
+/** All of the standard input, which has no size. */
+std::string ReadInput() {
+  std::string text;
+  std::array<char, 1 << 16> buffer;
+  for (std::size_t size = 0; (size = std::fread(buffer.data(), 1, buffer.size(), stdin)) > 0;) {
+    text.append(buffer.data(), size);
+  }
+  return text;
+}
+
+/** Parses a table whose delimiter is guessed where it is kAnyDelimiter. */
+Result<Parsed> ParseText(std::string_view text, const std::string& name, char* delimiter) {
   csv_parser parser{};
   csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL);
   Parsed parsed;
-  std::array<char, 1 << 16> buffer;
   bool is_good = true;
-  std::size_t size = 0;
   LineCounter lines(&parsed);
-  while (is_good && (size = std::fread(buffer.data(), 1, buffer.size(), file)) > 0) {
-    std::string_view rest(buffer.data(), size);
-    *delimiter = *delimiter == CsvTable::kAnyDelimiter ? GuessDelimiter(rest) : *delimiter;
-    csv_set_delim(&parser, static_cast<unsigned char>(*delimiter));
-    while (is_good && !rest.empty()) {
-      const std::string_view piece = rest.substr(0, std::min(rest.find('\n'), rest.size() - 1) + 1);
-      is_good = csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) ==
-                piece.size();
-      lines.Pass(piece);
-      rest.remove_prefix(piece.size());
-    }
+  *delimiter = *delimiter == CsvTable::kAnyDelimiter ? GuessDelimiter(text) : *delimiter;
+  csv_set_delim(&parser, static_cast<unsigned char>(*delimiter));
+  while (is_good && !text.empty()) {
+    const std::string_view piece = text.substr(0, std::min(text.find('\n'), text.size() - 1) + 1);
+    is_good =
+        csv_parse(&parser, piece.data(), piece.size(), TakeCell, TakeRow, &parsed) == piece.size();
+    lines.Pass(piece);
+    text.remove_prefix(piece.size());
   }
   is_good = is_good && csv_fini(&parser, TakeCell, TakeRow, &parsed) == 0;
   const int error = csv_error(&parser);
@@ -140,15 +126,11 @@ std::optional<double> ParseNumber(std::string_view text) {
 }
 
 Result<CsvTable> CsvTable::Read(const std::filesystem::path& path, char delimiter) {
-  if (const auto checked = path == "-" ? Result<void>() : CheckRegularFile(path); !checked) {
-    return Unexpected(checked.error());
+  const auto text = path == "-" ? Result<std::string>(ReadInput()) : ReadRegularFile(path);
+  if (!text) {
+    return Unexpected(text.error());
   }
-  const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
-                                                               : std::fopen(path.c_str(), "rb"));
-  if (file == nullptr) {
-    return Fail(ErrorCode::kUnreadable, "cannot be read", path.string(), "check its permissions");
-  }
-  auto parsed = ParseFile(file.get(), path.string(), &delimiter);
+  auto parsed = ParseText(*text, path.string(), &delimiter);
   if (!parsed) {
     return Unexpected(parsed.error());
   }
@@ -240,18 +222,16 @@ void CsvTable::Set(std::size_t row, std::string_view column, std::string value) 
 
 std::string CsvTable::ToText() const {
   std::string text;
-  const auto add = [&text, this](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (i > 0) {
-        text += delimiter_;
-      }
-      text += NeedsQuotes(cells[i], delimiter_) ? Quoted(cells[i]) : cells[i];
+  CsvRow row(delimiter_);
+  const auto add = [&](const std::vector<std::string>& cells) {
+    for (const std::string& cell : cells) {
+      row.Text(cell);
     }
-    text += "\n";
+    text += row.End();
   };
   add(columns_);
-  for (const std::vector<std::string>& row : rows_) {
-    add(row);
+  for (const std::vector<std::string>& cells : rows_) {
+    add(cells);
   }
   return text;
 }

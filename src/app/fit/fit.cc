@@ -22,6 +22,7 @@
 #include "app/fit/fit_peg.h"
 #include "app/fit/fit_population.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/round_json.h"
@@ -281,12 +282,15 @@ void AddSearch(CLI::App* fit, int* status) {
       ->add_option("--nominal", arguments->nominal_mm,
                    "Nominal diameter [mm], or with a unit: 1.5in")
       ->required()
+      ->check(Positive())
       ->transform(Millimetres());
   search
       ->add_option("--min", arguments->min_um, "Smallest clearance [um]; negative for interference")
+      ->check(AnyNumber())
       ->required();
   search
       ->add_option("--max", arguments->max_um, "Largest clearance [um]; negative for interference")
+      ->check(AnyNumber())
       ->required();
   search->add_option("--basis", arguments->basis, "Basis system: hole (H) or shaft (h)")
       ->check(CLI::IsMember({"hole", "shaft"}));

@@ -1,7 +1,6 @@
 #include "app/fit/fit_arguments.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "app/fit/csv_table.h"
 #include "app/output/choice.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "base/units.h"
 #include "fits/joint_friction.h"
 #include "fits/materials.h"
@@ -19,31 +19,12 @@
 
 namespace hvas::app {
 
-const CLI::Validator& Positive() {
-  static const CLI::Validator validator(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0 ? std::string()
-                                                                   : text + " is not above 0";
-      },
-      "OVER 0");
-  return validator;
-}
-
-const CLI::Validator& NotNegative() {
-  static const CLI::Validator validator(
-      [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value >= 0 ? std::string()
-                                                                    : text + " is negative";
-      },
-      "0 OR MORE");
-  return validator;
-}
-
 const CLI::Validator& Millimetres() {
   static const CLI::Validator validator(
       [](std::string& text) {
+        if (text.starts_with(' ') || text.ends_with(' ')) {
+          return std::string();  // It is no number for any other option, either.
+        }
         std::string_view rest = text;
         const std::optional<double> length = TakeLength(&rest);
         if (length && rest.empty()) {
@@ -80,27 +61,8 @@ const CLI::Validator& Temperature() {
         }
         return value <= 1000 ? std::string() : text + " C is above the limit of 1000 C for joining";
       },
-      "C");
+      "-196 TO 1000");
   return validator;
-}
-
-/** A whole number between 1 and some most, as "1000000" or "1e6". */
-CLI::Validator Count(std::int64_t most) {
-  return CLI::Validator(
-      [most](std::string& text) {
-        double value = 0;
-        const char* const end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data(), end, value);
-        if (error != std::errc() || stop != end || value != std::floor(value) || !(value >= 1)) {
-          return text + " is not a positive whole number";
-        }
-        if (!(value <= static_cast<double>(most))) {
-          return fmt::format("{} is above the maximum, {}", text, most);
-        }
-        text = fmt::format("{}", static_cast<std::int64_t>(value));
-        return std::string();
-      },
-      fmt::format("1 TO {}", most));
 }
 
 constexpr std::int64_t kMaxAssemblies = 100'000'000;  // What is kept of them takes 0.3 GB.
@@ -330,6 +292,7 @@ void AddPlotArguments(CLI::App* fit, FitArguments* a) {
                   "Load on the shaft at the centre of its tip: transverse and axial force [N], "
                   "moment [N mm]")
       ->delimiter(',')
+      ->check(AnyNumber())
       ->expected(3)
       ->group(group);
 }

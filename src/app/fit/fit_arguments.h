@@ -49,11 +49,6 @@ struct FitArguments {
   bool is_json{false};
 };
 
-/** Validators of options: numbers over 0, or of 0 or more. In words; the ones of CLI11 name the
- largest number there is. */
-[[nodiscard]] const CLI::Validator& Positive();
-[[nodiscard]] const CLI::Validator& NotNegative();
-
 /** Transforms options in millimetres: what is typed with another unit ("2in") becomes millimetres.
  */
 [[nodiscard]] const CLI::Validator& Millimetres();

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/csv_row.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "fits/press_stroke.h"
@@ -260,15 +261,16 @@ std::string ToCsv(const FitCurve& curve) {
       "pair_out_n,batch_mean_in_n,batch_0.1pct_in_n,batch_5pct_in_n,batch_50pct_in_n,"
       "batch_95pct_in_n,batch_99.9pct_in_n\n";
   for (const FitCurve::Point& p : curve.points) {
-    csv += fmt::format("{:.6g}", units::ToMm(p.depth) + 0.0);
+    CsvRow row;
+    row.Rounded(units::ToMm(p.depth) + 0.0, 6);
     for (const FitCurve::Forces& f : {p.least, p.mean, p.most, p.pair}) {
-      csv += fmt::format(",{:.9g},{:.9g}", f.in, f.out);
+      row.Rounded(f.in, 9).Rounded(f.out, 9);
     }
-    csv += fmt::format(",{:.7g}", p.band.mean);
+    row.Rounded(p.band.mean, 7);
     for (const double quantile : p.band.quantiles) {
-      csv += fmt::format(",{:.7g}", quantile);
+      row.Rounded(quantile, 7);
     }
-    csv += "\n";
+    csv += row.End();
   }
   return csv;
 }

@@ -11,6 +11,7 @@
 #include "app/output/choice.h"
 #include "app/output/json_flag.h"
 #include "app/output/length_text.h"
+#include "app/output/number_range.h"
 #include "app/output/report_failure.h"
 #include "app/output/round_json.h"
 #include "app/output/text_layout.h"
@@ -234,7 +235,9 @@ void AddFitDesign(CLI::App* fit, int* status) {
       ->check(NotNegative());
   design->add_option("--axial", a->demand.axial, "Axial force to hold at the same time [N]")
       ->check(NotNegative());
-  design->add_option("--safety", a->demand.safety, "Against slip")->capture_default_str();
+  design->add_option("--safety", a->demand.safety, "Against slip")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
   design
       ->add_option("--hub", a->hub_mm,
                    "Outer diameter of the hub [mm]; default: twice the nominal diameter")

@@ -10,6 +10,7 @@
 #include "app/assembly/rendering_options.h"
 #include "app/output/choice.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
@@ -105,18 +106,23 @@ void AddFitIdentify(CLI::App* fit, int* status) {
   const auto options = std::make_shared<IdentificationOptions>();
   const auto is_json = std::make_shared<bool>(false);
   command->add_option("--trials", options->trials, "Test insertions of each fit")
+      ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--training", options->training, "Training insertions of each fit")
+      ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed for sizes, surfaces and noise")
       ->capture_default_str();
   command
       ->add_option("--weber", options->observer.weber,
                    "Just noticeable difference (Weber fraction) of force")
+      ->check(FromBelow(0, 1))
       ->capture_default_str();
   command->add_option("--threshold", options->observer.threshold, "Absolute threshold of force [N]")
+      ->check(Positive())
       ->capture_default_str();
   command->add_option("--looks", options->observer.looks, "Perceptions in one insertion")
+      ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   AddPairsOption(command, &options->pairs);
   AddForceMapOption(command, &options->map);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/output/text_table.h"
+#include "base/csv_row.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "fits/paper_scales.h"
@@ -142,9 +143,15 @@ std::string ToCsv(const std::vector<PaperCurve>& curves) {
   std::string csv = "experiment,fit,factor,depth_mm,time_s,true_n,shown_n\n";
   for (const PaperCurve& curve : curves) {
     for (const PaperCurve::Point& p : curve.points) {
-      csv += fmt::format("{},{},{:.9g},{:.6g},{:.6g},{:.9g},{:.9g}\n", curve.experiment,
-                         fits::FindPaperScale(curve.kind).fit, curve.factor, units::ToMm(p.depth),
-                         p.time, p.true_force, p.shown);
+      csv += CsvRow()
+                 .Text(curve.experiment)
+                 .Text(fits::FindPaperScale(curve.kind).fit)
+                 .Rounded(curve.factor, 9)
+                 .Rounded(units::ToMm(p.depth), 6)
+                 .Rounded(p.time, 6)
+                 .Rounded(p.true_force, 9)
+                 .Rounded(p.shown, 9)
+                 .End();
     }
   }
   return csv;

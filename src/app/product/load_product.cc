@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/command_watch.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "base/file_cache.h"
 #include "base/units.h"
@@ -67,7 +68,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited) {
                            ? "Time limit for the command, to its last output [s]; without it, an "
                              "hour where the product is prepared, planned or run"
                            : "Time limit for opening a file [s]")
-          ->check(CLI::PositiveNumber)
+          ->check(Positive())
           ->capture_default_str();
   if (limited == Limited::kCommand) {
     command->parse_complete_callback([options, time] {
@@ -78,7 +79,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited) {
       ->add_option("--memory-limit", options->limits.memory,
                    "Memory limit for opening the file, for example 8GB; default: 4GB, or three "
                    "quarters of the machine's memory where that is less")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+      ->transform(Bytes());
   command
       ->add_option("--max-parts", options->max_parts,
                    "Limit of parts in the file, each instance counted")

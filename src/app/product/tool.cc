@@ -14,6 +14,7 @@
 
 #include "app/command_watch.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/report_failure.h"
 #include "app/output/round_json.h"
 #include "app/output/text_layout.h"
@@ -23,6 +24,7 @@
 #include "assembly/prepare_model.h"
 #include "base/atomic_file.h"
 #include "base/crash_note.h"
+#include "base/csv_row.h"
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "mates/fasteners.h"
@@ -376,11 +378,19 @@ std::string MakeTurnCsv(const Product& product, const simulation::TurnResult& tu
       "time_s,lift_mm,hand_deg,tool_deg,fastener_deg,travel_mm,torque_nm,hand_torque_nm,contacts,"
       "obstacle,obstacle_force_n\n";
   for (const simulation::TurnSample& sample : turn.samples) {
-    csv += fmt::format("{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.5f},{:.5f},{},\"{}\",{:.3f}\n",
-                       sample.time, units::ToMm(sample.lift), units::ToDeg(sample.hand_angle),
-                       units::ToDeg(sample.tool_angle), units::ToDeg(sample.fastener_angle),
-                       units::ToMm(sample.fastener_travel), sample.torque, sample.hand_torque,
-                       sample.contact_count, names.Of(sample.obstacle), sample.obstacle_force);
+    csv += CsvRow()
+               .Fixed(sample.time, 3)
+               .Fixed(units::ToMm(sample.lift), 4)
+               .Fixed(units::ToDeg(sample.hand_angle), 4)
+               .Fixed(units::ToDeg(sample.tool_angle), 4)
+               .Fixed(units::ToDeg(sample.fastener_angle), 4)
+               .Fixed(units::ToMm(sample.fastener_travel), 6)
+               .Fixed(sample.torque, 5)
+               .Fixed(sample.hand_torque, 5)
+               .Whole(sample.contact_count)
+               .Text(names.Of(sample.obstacle))
+               .Fixed(sample.obstacle_force, 3)
+               .End();
   }
   return csv;
 }
@@ -531,14 +541,16 @@ void AddTool(CLI::App* app, int* status) {
   command->add_option("--tool", options->tool,
                       "CAD file of the tool; default: the hexagon key of the socket's size");
   AddFixtureOption(command, &options->load);
-  auto* turn = command->add_option(
-      "--turn", options->turn_deg,
-      "Turn the fastener by contact with the tool: angle, counter-clockwise as seen by the user, "
-      "which loosens a right-hand thread [deg]");
+  auto* turn = command
+                   ->add_option("--turn", options->turn_deg,
+                                "Turn the fastener by contact with the tool: angle, "
+                                "counter-clockwise as seen by the user, "
+                                "which loosens a right-hand thread [deg]")
+                   ->check(AnyNumber());
   command
       ->add_option("--torque", options->torque_nm,
                    "Dry friction of the fastener in its thread and under its head [N m]")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->needs(turn)
       ->capture_default_str();
   command

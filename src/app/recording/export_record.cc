@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/output/number_range.h"
 #include "base/regular_file.h"
 #include "evidence/demonstrations.h"
 #include "evidence/tables.h"
@@ -36,10 +37,12 @@ Writer FindWriter(const std::string& ending) {
 }  // namespace
 
 void AddRecordSelection(CLI::App* command, RecordSelection* selection) {
-  command->add_option("--from", selection->from_s,
-                      "For a record: begin of the exported session time [s]");
-  command->add_option("--to", selection->to_s,
-                      "For a record: end of the exported session time [s]");
+  command
+      ->add_option("--from", selection->from_s,
+                   "For a record: begin of the exported session time [s]")
+      ->check(AnyNumber());
+  command->add_option("--to", selection->to_s, "For a record: end of the exported session time [s]")
+      ->check(AnyNumber());
   command
       ->add_option("--every", selection->every,
                    "For a record: keep one of so many ticks of each hand (not for .glb)")

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
@@ -227,12 +228,17 @@ void AddStudyAnalyse(CLI::App* study, int* status) {
   const auto a = std::make_shared<AnalyseArguments>();
   AddStudyTableOptions(command, &a->table)->required();
   command->add_option("--alpha", a->options.alpha, "Family-wise significance level")
+      ->check(Between(0, 0.5))
       ->capture_default_str();
-  command->add_option("--of", a->options.of,
-                      "Number of trials for each value, when values are counts of correct answers");
-  command->add_option(
-      "--chance", a->options.chance,
-      "Probability of a correct answer by guessing; default: one over the number of conditions");
+  command
+      ->add_option("--of", a->options.of,
+                   "Number of trials for each value, when values are counts of correct answers")
+      ->check(CLI::Range(1, 10'000));
+  command
+      ->add_option(
+          "--chance", a->options.chance,
+          "Probability of a correct answer by guessing; default: one over the number of conditions")
+      ->check(Between(0, 1));
   CLI::Option* higher = command->add_flag_callback(
       "--higher-is-better", [a] { a->options.direction = study::Direction::kHigherIsBetter; },
       "Higher values are better: name the better of a pair; does not affect tests");

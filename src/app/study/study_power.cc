@@ -10,6 +10,7 @@
 
 #include "app/output/choice.h"
 #include "app/output/json_flag.h"
+#include "app/output/number_range.h"
 #include "app/output/progress.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
@@ -193,24 +194,29 @@ Result<void> Simulate(PowerArguments a) {
 
 void AddDesignOptions(CLI::App* command, PowerArguments* a) {
   const char* const group = "Design";
-  const auto add = [&](const char* name, std::vector<double>* values, const char* what) {
-    return command->add_option(name, *values, what)->delimiter(',')->group(group);
+  const auto add = [&](const char* name, std::vector<double>* values, const CLI::Validator& range,
+                       const char* what) {
+    return command->add_option(name, *values, what)->delimiter(',')->check(range)->group(group);
   };
-  CLI::Option* means = add("--means", &a->means, "Means of the conditions; normal distribution");
+  CLI::Option* means =
+      add("--means", &a->means, AnyNumber(), "Means of the conditions; normal distribution");
   CLI::Option* sds =
-      add("--sd", &a->sds,
+      add("--sd", &a->sds, Positive(),
           "Standard deviation between participants: one for all conditions, or one for each");
-  CLI::Option* medians = add("--medians", &a->medians,
+  CLI::Option* medians = add("--medians", &a->medians, Positive(),
                              "Medians of the conditions; log-normal distribution, as of times");
-  CLI::Option* log_sds = add("--log-sd", &a->log_sds,
+  CLI::Option* log_sds = add("--log-sd", &a->log_sds, Positive(),
                              "Standard deviation of the natural logarithm: 0.3 is about 30 %");
-  CLI::Option* shares =
-      add("--identification", &a->shares, "Probability of a correct answer under each condition");
-  CLI::Option* of = command->add_option("--of", a->of, "Trials for each condition")->group(group);
+  CLI::Option* shares = add("--identification", &a->shares, CLI::Range(0.0, 1.0),
+                            "Probability of a correct answer under each condition");
+  CLI::Option* of = command->add_option("--of", a->of, "Trials for each condition")
+                        ->check(CLI::Range(1, 10'000))
+                        ->group(group);
   command
       ->add_option(
           "--correlation", a->correlation,
           "Correlation of a participant's values under two conditions, with --means and --medians")
+      ->check(FromBelow(0, 1))
       ->capture_default_str()
       ->group(group);
   means->needs(sds);
@@ -235,21 +241,28 @@ void AddStudyPower(CLI::App* study, int* status) {
             "Test: friedman, or wilcoxon for two conditions; asymptotic")
       ->default_str("friedman");
   command->add_option("--alpha", a->options.alpha, "Family-wise significance level")
+      ->check(Between(0, 0.5))
       ->capture_default_str();
   command
       ->add_option(
           "--comparisons", a->comparisons,
           "Number of tests that share the level (Bonferroni): 3 for the pairs of three conditions")
+      ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   command
       ->add_option("--power", a->options.target,
                    "Required power: share of studies that find a difference")
+      ->check(Between(0, 1))
       ->capture_default_str();
-  command->add_option("--participants", a->participants,
-                      "Only calculate the power with this number of participants");
+  command
+      ->add_option("--participants", a->participants,
+                   "Only calculate the power with this number of participants")
+      ->check(CLI::Range(3, 10'000));
   command->add_option("--most", a->options.most, "Largest number of participants to try")
+      ->check(CLI::Range(3, 10'000))
       ->capture_default_str();
   command->add_option("--runs", a->options.runs, "Number of simulated studies for each size")
+      ->check(CLI::Range(100, 1'000'000))
       ->capture_default_str();
   command->add_option("--seed", a->options.seed, "Seed of the simulation")->capture_default_str();
   AddJsonFlag(command, &a->is_json, "study_power");

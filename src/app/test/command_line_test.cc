@@ -158,6 +158,119 @@ TEST(Usage, NumbersAndMissingWordsAreToldPlainly) {
   EXPECT_TRUE(Has(RunHvas({"assemble"}).err, "file is missing"));
 }
 
+/** An option, or an argument, that takes a number. */
+struct NumericOption {
+  std::vector<std::string> command;  ///< The words that lead to it.
+  std::string name;
+  std::string type;  ///< What CLI11 prints: type and range.
+  bool is_argument{false};
+  bool may_be_empty{false};
+  int arguments_before{0};  ///< Required ones, which take the first words.
+};
+
+void ListNumericOptions(CLI::App* app, std::vector<std::string> command,
+                        std::vector<NumericOption>* list) {
+  const auto options = app->get_options();
+  int arguments = 0;
+  for (const CLI::Option* option : options) {
+    arguments += option->nonpositional() || !option->get_required() ? 0 : 1;
+  }
+  int before = 0;
+  for (const CLI::Option* option : options) {
+    const bool is_argument = !option->nonpositional();
+    const std::string type = option->get_type_name();
+    const bool is_number =
+        type.starts_with("FLOAT") || type.starts_with("INT") || type.starts_with("UINT");
+    if (is_number && option->get_expected_max() > 0) {
+      list->push_back({command, option->get_name(), type, is_argument,
+                       option->get_expected_min() == 0, is_argument ? before : arguments});
+    }
+    before += is_argument ? 1 : 0;
+  }
+  for (CLI::App* below : app->get_subcommands([](const CLI::App*) { return true; })) {
+    auto words = command;
+    if (!below->get_name().empty()) {
+      words.push_back(below->get_name());
+    }
+    ListNumericOptions(below, std::move(words), list);
+  }
+}
+
+/** The text of the refusal of this value; empty where it is taken, whatever else is missing. */
+std::string Refuse(CLI::App* app, const NumericOption& option, const std::string& value) {
+  std::vector<std::string> words = option.command;
+  words.insert(words.end(), static_cast<std::size_t>(option.arguments_before), "x");
+  words.push_back(option.is_argument ? "--" : option.name);
+  words.push_back(value);
+  std::reverse(words.begin(), words.end());
+  try {
+    app->parse(std::move(words));
+  } catch (const CLI::ConversionError& error) {
+    return error.what();
+  } catch (const CLI::ValidationError& error) {
+    return error.what();
+  } catch (const CLI::ParseError&) {
+    return {};  // Another option is needed, too.
+  }
+  return {};
+}
+
+TEST(Numbers, EachOptionStatesItsRangeAndRefusesByItsNameWhatIsNoNumberOfIt) {
+  int status = 0;
+  const auto app = MakeCommandLine(&status);
+  std::string never;  // It is missing, which is found after all values are read: nothing is run.
+  app->add_option("--never", never, "Not given")->required();
+  std::vector<NumericOption> options;
+  ListNumericOptions(app.get(), {}, &options);
+  EXPECT_GT(options.size(), 150);
+  for (const NumericOption& option : options) {
+    SCOPED_TRACE(::testing::PrintToString(option.command) + " " + option.name + " " + option.type);
+    const std::size_t colon = option.type.find(':');
+    ASSERT_NE(colon, std::string::npos) << "no range";
+    const std::string range = option.type.substr(colon + 1);
+    for (const char* value : {"nan", "-nan", "inf", "-inf", "1e400", "-1e400", "0x10", "", " ",
+                              " 5", "5 ", "5abc", "--", "+-5", "1,5e", "five"}) {
+      const bool is_taken = option.may_be_empty && std::string(value).empty();
+      EXPECT_TRUE(is_taken || Has(Refuse(app.get(), option, value), option.name))
+          << "\"" << value << "\"";
+    }
+    const bool is_any = range == "ANY NUMBER" || range == "-196 TO 1000";
+    EXPECT_EQ(Refuse(app.get(), option, "-1").empty(), is_any);
+    const bool has_no_end = option.type.starts_with("FLOAT") && !Has(range, "BELOW") &&
+                            !Has(range, "in [") && range != "-196 TO 1000";
+    for (const char* huge : {"99999999999999999999", "18446744073709551616"}) {
+      EXPECT_EQ(Refuse(app.get(), option, huge).empty(), has_no_end) << huge;
+    }
+  }
+}
+
+TEST(Numbers, AreDecimalAndWhatIsRefusedIsNotRun) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"fit", "paper", "--seed", "-1"},
+        {"fit", "paper", "--seed", "99999999999999999999"},
+        {"fit", "paper", "--seed=0x10"},
+        {"assemble", "none.step", "--seed", "-1"},
+        {"assemble", "none.step", "--memory-limit", "-1"},
+        {"assemble", "none.step", "--memory-limit", "99999999999GB"},
+        {"campaign", "play", "none.yaml", "--", "-1"}}) {
+    const Ran ran = RunHvas(words);
+    SCOPED_TRACE(ran.err);
+    EXPECT_EQ(ran.status, 64);
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_TRUE(Has(RunHvas({"fit", "paper", "--seed", "-1"}).err, "--seed: -1 is negative"));
+  EXPECT_TRUE(Has(RunHvas({"fit", "paper", "--seed", "5abc"}).err,
+                  "--seed needs a whole number of 0 or more, not \"5abc\""));
+  const auto paper = [](const char* seed) {
+    const Ran ran = RunHvas({"fit", "paper", "--seed", seed});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return ran.out;
+  };
+  EXPECT_EQ(paper("010"), paper("10"));
+  EXPECT_NE(paper("010"), paper("8"));
+  EXPECT_EQ(paper("18446744073709551615"), paper("+18446744073709551615"));
+}
+
 TEST(Fit, NeedsNoQuotes) {
   const auto out = [](std::vector<std::string> words) {
     words.insert(words.begin(), "fit");

@@ -1,8 +1,8 @@
 #include "cad/process/worker_export.h"
 
 #include <exception>
-#include <fstream>
 #include <span>
+#include <sstream>
 
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <IFSelect_ReturnStatus.hxx>
@@ -73,7 +73,7 @@ Result<CadDocument> ReadDocument(const std::filesystem::path& file, const Import
  @returns what went wrong; empty when all are where they should be. */
 std::string Move(const opencascade::handle<TDocStd_Document>& document, const std::string& name,
                  const std::string& file) {
-  std::ifstream stream(file);
+  std::istringstream stream(ReadRegularFile(file).value_or(std::string()));
   Motions motions;
   std::string path;
   for (double w = 0, x = 0, y = 0, z = 0, p_x = 0, p_y = 0, p_z = 0;

@@ -2,17 +2,22 @@
 
 #include "campaign/campaign_folder.h"
 
+#include <barrier>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/test/odd_files.h"
 #include "base/test/temporary_folder.h"
 #include "campaign/campaign_page.h"
 #include "campaign/run_campaign.h"
 #include "campaign/slurm.h"
 #include "campaign/summary.h"
+#include "campaign/table_file.h"
 #include "record/database.h"
 
 namespace hvas::campaign {
@@ -87,6 +92,99 @@ TEST_F(CampaignFolderTest, DigestDependsNeitherOnShardsNorOnJobs) {
   EXPECT_LT(summary.cells[0].force_quantiles[1], summary.cells[1].force_quantiles[1]);
   EXPECT_GE(summary.cells[0].yield->share, summary.cells[1].yield->share);
   EXPECT_EQ(summary.cells[0].cost_rank, summary.cells[1].cost_rank);  // Of equal grades.
+}
+
+/** What several programs get that make a folder at once, for one plan each. */
+std::vector<Result<CampaignFolder>> MakeAtOnce(const std::filesystem::path& path,
+                                               const std::vector<Plan>& plans) {
+  std::vector<std::optional<Result<CampaignFolder>>> made(plans.size());
+  std::barrier begin(static_cast<std::ptrdiff_t>(plans.size()));
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    threads.emplace_back([&, i] {
+      begin.arrive_and_wait();
+      made[i] = CampaignFolder::Make(path, plans[i], kTestProgram);
+    });
+  }
+  std::vector<Result<CampaignFolder>> results;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    threads[i].join();
+    results.push_back(*made[i]);
+  }
+  return results;
+}
+
+TEST_F(CampaignFolderTest, OfManyThatMakeItAtOnceAllShareIt) {
+  const Plan plan = MakePlan(40);
+  for (int round = 0; round < 20; ++round) {
+    const auto path = scratch_ / ("fresh-" + std::to_string(round));
+    for (const auto& folder : MakeAtOnce(path, std::vector<Plan>(8, plan))) {
+      ASSERT_TRUE(folder) << folder.error().ToString();
+      EXPECT_EQ(folder->plan().id, plan.id);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path / "campaign.lock"));
+  }
+}
+
+TEST_F(CampaignFolderTest, OfTwoPlansAtOnceOneHasItAndTheOtherIsRefused) {
+  std::vector<Plan> plans(4, MakePlan(40));
+  plans.resize(8, MakePlan(40, "may_yield: true\n"));
+  for (int round = 0; round < 20; ++round) {
+    const auto path = scratch_ / ("contended-" + std::to_string(round));
+    const auto made = MakeAtOnce(path, plans);
+    const bool has_first = made[0].has_value();
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      EXPECT_EQ(made[i].has_value(), (i < 4) == has_first);
+      if (!made[i]) {
+        EXPECT_NE(made[i].error().message.find("another plan"), std::string::npos)
+            << made[i].error().ToString();
+      }
+    }
+    EXPECT_TRUE(CampaignFolder::Open(path)) << "what is there belongs together";
+  }
+}
+
+TEST_F(CampaignFolderTest, AMakerThatWasKilledLeavesAFolderThatCanBeMade) {
+  const Plan plan = MakePlan(40);
+  std::filesystem::create_directory(scratch_ / "left");
+  std::ofstream(scratch_ / "left" / "campaign.lock");
+  std::ofstream(scratch_ / "left" / "plan.yaml") << "format: hvas-ca";
+  std::ofstream(scratch_ / "left" / "campaign.json.aB3dEf") << "{";
+  EXPECT_EQ(MakeFolder("left", plan).plan().id, plan.id);
+  std::filesystem::create_directory(scratch_ / "foreign");
+  std::ofstream(scratch_ / "foreign" / "plan.yaml") << "mine";
+  const auto refused = CampaignFolder::Make(scratch_ / "foreign", plan, kTestProgram);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("not empty"), std::string::npos);
+  EXPECT_EQ(ReadBytes(scratch_ / "foreign" / "plan.yaml"), "mine");
+}
+
+TEST_F(CampaignFolderTest, AShardThatIsNoFileIsNamedAndNotWaitedFor) {
+  const CampaignFolder folder = MakeFolder("odd", MakePlan(40));
+  Run(folder, 1);
+  const std::filesystem::path shard = folder.PathOf(1);
+  for (const auto& odd : hvas::testing::MakeOddFiles(scratch_ / "odd-files", "shard")) {
+    std::filesystem::remove(shard);
+    std::filesystem::create_symlink(odd.path, shard);
+    const Summary summary = CollectFolder(folder);
+    ASSERT_EQ(summary.damaged.size(), 1U) << odd.kind;
+    EXPECT_NE(summary.damaged[0].second.find("this is " + odd.kind), std::string::npos)
+        << summary.damaged[0].second;
+  }
+  std::filesystem::remove(shard);
+  std::filesystem::create_symlink(shard, shard);  // It leads to itself.
+  EXPECT_FALSE(ReadShard(shard, folder.MakeKey(1)));
+}
+
+TEST_F(CampaignFolderTest, OfTwoThatWriteOneTableTheSecondIsRefused) {
+  auto first = TableFile::Create(scratch_ / "rows.sqlite");
+  ASSERT_TRUE(first) << first.error().ToString();
+  const auto second = TableFile::Create(scratch_ / "rows.sqlite");
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find("another program is writing this table"),
+            std::string::npos);
+  EXPECT_TRUE(first->Finish());
+  EXPECT_TRUE(TableFile::Create(scratch_ / "rows.sqlite"));
 }
 
 TEST_F(CampaignFolderTest, AShardDoneAgainHasTheSameBytes) {

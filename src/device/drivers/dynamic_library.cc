@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -11,6 +10,8 @@
 #include <elf.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "base/regular_file.h"
 
 namespace hvas::device {
 namespace {
@@ -55,11 +56,9 @@ struct Machine {
 };
 
 std::optional<Machine> ReadMachine(const fs::path& file) {
-  std::array<char, sizeof(Elf64_Ehdr)> head{};
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(head.data(), head.size());
-  const std::string_view magic(head.data(), SELFMAG);
-  if (stream.gcount() < 20 || magic != std::string_view(ELFMAG, SELFMAG)) {
+  const std::string head = ReadFileHead(file, sizeof(Elf64_Ehdr)).value_or(std::string());
+  constexpr std::size_t kUsed = 20;  // Bytes, up to the processor.
+  if (head.size() < kUsed || !head.starts_with(std::string_view(ELFMAG, SELFMAG))) {
     return std::nullopt;
   }
   const auto low = static_cast<unsigned char>(head[18]);
@@ -180,7 +179,9 @@ Result<DynamicLibrary> DynamicLibrary::Load(const LibrarySearch& search,
                                             std::vector<Finding>* looked_for) {
   std::optional<Error> failure;
   for (const fs::path& file : LookForLibrary(search, looked_for)) {
-    const Opened opened = OpenLibrary(file.string());
+    const auto checked = CheckRegularFile(file);  // The loader would wait for a pipe.
+    const Opened opened =
+        checked ? OpenLibrary(file.string()) : Opened{nullptr, checked.error().message};
     if (opened.handle != nullptr) {
       return DynamicLibrary(opened.handle, file.string());
     }

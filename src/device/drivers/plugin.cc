@@ -9,6 +9,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
 #include "device/drivers/polled_guard.h"
 #include "device/drivers/wire_drivers.h"
 #include "device/plugin/hvas_device_plugin.h"
@@ -211,10 +212,12 @@ Result<const HvasDevicePlugin*> FindTable(void* library, const std::string& file
 }
 
 Result<Library> Load(const std::string& file) {
-  std::error_code failure;
-  if (!std::filesystem::exists(file, failure)) {
-    return Fail(ErrorCode::kNotFound, "there is no such plug-in", file,
-                "give the path of its library, for example plugin:/path/to/device.so");
+  // The loader waits for a pipe, and reads a device to its end.
+  if (const auto checked = CheckRegularFile(file); !checked) {
+    return checked.error().code == ErrorCode::kNotFound
+               ? Fail(ErrorCode::kNotFound, "there is no such plug-in", file,
+                      "give the path of its library, for example plugin:/path/to/device.so")
+               : Unexpected(checked.error());
   }
   Library library(::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (library == nullptr) {

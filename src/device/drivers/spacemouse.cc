@@ -6,12 +6,13 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/regular_file.h"
 #include "device/drivers/polled_guard.h"
 #include "device/drivers/rate_control.h"
 #include "device/drivers/spacenav_protocol.h"
@@ -143,7 +144,8 @@ class SpaceMouse final : public Device {
 
 /** The path that a spnavrc gives the socket, or none. */
 std::string SocketInSettings(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  constexpr std::size_t kMostBytes = 100'000;  // It has a few lines: a choice.
+  std::istringstream stream(ReadFileHead(file, kMostBytes).value_or(std::string()));
   std::string line;
   while (std::getline(stream, line)) {
     const std::size_t equals = line.find('=');

@@ -2,6 +2,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <sstream>
+
 #include "base/test/await_true.h"
 #include "studio/connection_table.h"
 #include "studio/test/server_fixture.h"
@@ -49,6 +51,57 @@ TEST_F(ServerTest, LongHeaderIsRefused) {
     EXPECT_TRUE(client.IsClosed());
   }
   EXPECT_EQ(Get("/").status, 200);
+}
+
+TEST_F(ServerTest, BodyWhereNoneIsAllowedIsNotTheNextRequest) {
+  const std::string next = "GET / HTTP/1.1\r\nHost: " + host() + "\r\n\r\n";
+  const std::string size = std::to_string(next.size());
+  const auto chunk = [](const std::string& text) {
+    std::ostringstream out;
+    out << std::hex << text.size() << "\r\n" << text << "\r\n0\r\n\r\n";
+    return out.str();
+  };
+  const std::string cookie = "Cookie: " + CookieOf(Role::kOperator) + "\r\n";
+  const std::string from = "Origin: " + origin() + "\r\n";
+  const std::vector<std::string> heads{
+      "GET / HTTP/1.1\r\nContent-Length: " + size + "\r\n",
+      "GET /api/scene HTTP/1.1\r\n" + cookie + "Content-Length: " + size + "\r\n",
+      "GET /none HTTP/1.1\r\nContent-Length: " + size + "\r\n",
+      "HEAD / HTTP/1.1\r\n" + from + "Content-Length: " + size + "\r\n",
+      "DELETE / HTTP/1.1\r\n" + from + "Content-Length: " + size + "\r\n",
+      "GET / HTTP/1.1\r\nTransfer-Encoding: gzip\r\n",
+      "GET / HTTP/1.1\r\nTransfer-Encoding: identity\r\nContent-Length: " + size + "\r\n",
+      "GET / HTTP/1.1\r\nContent-Length: 0\r\nContent-Length: " + size + "\r\n",
+      "GET / HTTP/1.1\r\nContent-Length: +" + size + "\r\n",
+      "GET / HTTP/1.1\r\nContent-Length: " + size + ", " + size + "\r\n",
+      "GET / HTTP/1.1\r\nContent-Length : " + size + "\r\n",
+      "GET /ws HTTP/1.1\r\n" + cookie + from +
+          "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+          "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nContent-Length: " +
+          size + "\r\n",
+      "POST /api/session HTTP/1.1\r\n" + from +
+          "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n",
+      "POST /api/session HTTP/1.1\r\n" + from + "Transfer-Encoding: gzip\r\n",
+      "POST /none HTTP/1.1\r\n" + cookie + from + "Content-Length: " + size + "\r\n"};
+  for (const std::string& head : heads) {
+    SCOPED_TRACE(head);
+    RawClient client(server_->port());
+    client.Send(head + "Host: " + host() + "\r\n\r\n" + next);
+    const int status = client.ReadReply().status;
+    EXPECT_TRUE(status == 0 || status >= 400) << status;
+    EXPECT_EQ(client.ReadReply().status, 0) << "what follows is not read";
+  }
+  for (const std::string& head :
+       {std::string("GET / HTTP/1.1\r\n"), "DELETE / HTTP/1.1\r\n" + from}) {
+    RawClient client(server_->port());
+    client.Send(head + "Host: " + host() + "\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk(next));
+    EXPECT_GE(client.ReadReply().status, 400);
+    EXPECT_EQ(client.ReadReply().status, 0);
+  }
+  RawClient good(server_->port());
+  for (int i = 0; i < 2; ++i) {  // No body is none, however it is said.
+    EXPECT_EQ(good.Ask({"GET", "/", {{"Host", host()}, {"Content-Length", "0"}}, ""}).status, 200);
+  }
 }
 
 TEST_F(ServerTest, LongBodyOfATokenIsRefused) {

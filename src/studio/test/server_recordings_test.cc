@@ -6,6 +6,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -137,6 +138,28 @@ TEST_F(ServerRecordingsTest, ViewersGetWhatTheOwnerHasSharedWhileItsProductIsOpe
   EXPECT_EQ(list(Role::kViewer), std::set<std::string>());
   EXPECT_EQ(status("own/file"), 404);
   for (const char* name : {"own.hvasrec", "other.hvasrec", "shared.json"}) {
+    std::filesystem::remove(folder_of_recordings_ / name);
+  }
+}
+
+TEST_F(ServerRecordingsTest, ANameEndsNeitherTheHeaderNorItsValue) {
+  for (const auto& [name, target, value] :
+       {std::tuple("a\r\nSet-Cookie: x=1\r\n\r\n<b>.hvasrec",
+                   "a%0D%0ASet-Cookie%3A%20x=1%0D%0A%0D%0A%3Cb%3E",
+                   "attachment; filename=\"a__Set-Cookie: x=1____<b>.hvasrec\"; "
+                   "filename*=UTF-8''a%0D%0ASet-Cookie%3A%20x%3D1%0D%0A%0D%0A%3Cb%3E.hvasrec"),
+        {"x\"; filename=\"y.hvasrec", "x%22%3B%20filename=%22y",
+         "attachment; filename=\"x_; filename=_y.hvasrec\"; "
+         "filename*=UTF-8''x%22%3B%20filename%3D%22y.hvasrec"},
+        {"\xc3\xa4.hvasrec", "%C3%A4",
+         "attachment; filename=\"__.hvasrec\"; filename*=UTF-8''%C3%A4.hvasrec"},
+        {"pump 2.hvasrec", "pump%202", "attachment; filename=\"pump 2.hvasrec\""}}) {
+    Record(name, {}, "{}");
+    const Reply reply = GetKnown(std::string("/api/recording/") + target + "/file");
+    EXPECT_EQ(reply.status, 200) << name;
+    EXPECT_EQ(reply.headers.count("set-cookie"), 0U);
+    EXPECT_EQ(reply.headers.at("content-disposition"), value);
+    EXPECT_TRUE(reply.body.starts_with("SQLite format 3"));
     std::filesystem::remove(folder_of_recordings_ / name);
   }
 }

@@ -96,6 +96,17 @@ TEST_F(SimulatedStudyTest, DeletedParticipantLeavesNothing) {
   ASSERT_TRUE(participants);
   std::ofstream(folder.path() / "trials.csv") << MakeTrialsCsv(*participants);
   std::ofstream(folder.path() / "report.html") << *MakeStudyPage(folder, *participants);
+  const auto before = ReadFolder(folder.path());
+  {
+    const auto running = folder.OpenJournal("P02", true);
+    ASSERT_TRUE(running) << running.error().ToString();
+    const auto refused = folder.Delete("P02");
+    ASSERT_FALSE(refused) << "its session runs";
+    EXPECT_NE(refused.error().ToString().find("runs the session of this participant"),
+              std::string::npos);
+    EXPECT_NE(refused.error().where.find("P02.jsonl"), std::string::npos);
+    EXPECT_EQ(ReadFolder(folder.path()), before);
+  }
   const auto removed = folder.Delete("P02");
   ASSERT_TRUE(removed) << removed.error().ToString();
   EXPECT_EQ(removed->size(), 1 + 2 + 2U);  // journal, records of two trials with sessions, tables

@@ -3,9 +3,11 @@
 
 #include "study/study_session.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "study/study_folder.h"
 #include "study/test/tiny_study.h"
 
 namespace hvas::study {
@@ -90,6 +92,28 @@ TEST_F(StudySessionTest, W11GoesFromConsentToTheLastAnswer) {
   EXPECT_EQ(session_.done().size(), 7U);
   EXPECT_EQ(std::get<int>(session_.answers()[1].value), 7);
   EXPECT_FALSE(session_.Apply(Make(Kind::kBegun)));
+}
+
+TEST_F(StudySessionTest, AnAnswerThatIsAFormulaIsATextInTheTable) {
+  BeginTrials();
+  for (std::size_t trial = 0; trial < 3; ++trial) {
+    DoTrial(trial);
+  }
+  Do(Give("hand", "left"));
+  for (std::size_t trial = 3; trial < 7; ++trial) {
+    DoTrial(trial);
+    Do(Give(std::string(kIdentifyQuestion), "H7/p6"));
+  }
+  Do(Give("calm", 7));
+  Do(Give("easy", AnswerValue()));
+  Do(Give("remarks", "=1+\"2,3\""));
+  std::vector<Participant> participants(1);
+  participants[0].id = "P01";
+  participants[0].session = std::make_unique<StudySession>(session_);
+  const std::string answers = MakeAnswersCsv(participants);
+  EXPECT_NE(answers.find("P01,0,remarks,7,\"'=1+\"\"2,3\"\"\"\r\n"), std::string::npos) << answers;
+  EXPECT_NE(answers.find("P01,0,calm,7,7\r\n"), std::string::npos) << answers;
+  EXPECT_EQ(MakeTrialsCsv(participants).find("'"), std::string::npos);
 }
 
 TEST_F(StudySessionTest, NothingIsAskedOfWhoDoesNotAgree) {

@@ -1,5 +1,6 @@
 /** Files and links: in by the chooser, out as pictures, tables and addresses. */
 
+import { csvText, type CsvCell } from "../model/csv";
 import { kTraceFields, readSeries } from "../model/trace";
 import { encodeMoment, encodeView } from "../model/view_link";
 import { store, studio, viewport } from "./app_state";
@@ -21,11 +22,10 @@ export function chooseFile(): void {
   input.click();
 }
 
-export function saveTable(rows: readonly (readonly (string | number)[])[], name: string): void {
+export function saveTable(rows: readonly (readonly CsvCell[])[], name: string): void {
   // Seven figures are all that a frame's numbers have.
-  const cell = (value: string | number) => (typeof value === "string" ? JSON.stringify(value) : Number(value.toPrecision(7)));
-  const text = rows.map((row) => `${row.map(cell).join(",")}\n`);
-  save(new Blob(text, { type: "text/csv" }), `${stem()}_${name}.csv`);
+  const cell = (value: CsvCell) => (typeof value === "string" ? value : Number(value.toPrecision(7)));
+  save(new Blob([csvText(rows.map((row) => row.map(cell)))], { type: "text/csv" }), `${stem()}_${name}.csv`);
 }
 
 function save(blob: Blob, name: string): void {

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals";
 import type { PathPoints, PathSwept } from "../protocol/messages";
+import { csvText } from "./csv";
 import { angleBetween, distance, type Pose, type Vec3 } from "./math";
 import type { Studio } from "./studio";
 
@@ -65,7 +66,7 @@ export function pathTurning(poses: readonly Pose[]): number {
 export function pathCsv({ points_m, poses }: PathPoints): string {
   const rows = points_m.map((p, k) => {
     const pose = poses[k];
-    return [...p, ...(pose === undefined ? ["", "", "", "", "", "", ""] : [...pose.p, ...pose.q])].join(",");
+    return [...p, ...(pose === undefined ? ["", "", "", "", "", "", ""] : [...pose.p, ...pose.q])];
   });
-  return ["x_m,y_m,z_m,part_x_m,part_y_m,part_z_m,q_w,q_x,q_y,q_z", ...rows, ""].join("\n");
+  return csvText([["x_m", "y_m", "z_m", "part_x_m", "part_y_m", "part_z_m", "q_w", "q_x", "q_y", "q_z"], ...rows]);
 }
