@@ -74,6 +74,16 @@ class Hub {
   /** Removes all clients without notice, when the server ends. */
   void DropClients() { clients_.clear(); }
 
+  /** Executes and replies to a command that switches the forces off while they are on, before
+   anything else that waits: it sets what the haptic thread reads before it looks at who the client
+   is, or at how many commands it has sent. Any client may do this. @returns false for any other
+   message, which is left to OnText(). */
+  bool TrySwitchForcesOff(const std::string& id, std::string_view text);
+
+  /** Refuses a command that would switch the forces on, which was sent before they were switched
+   off and is executed only now. @returns false for any other message. */
+  bool TryRefuseForcesOn(const std::string& id, std::string_view text);
+
   /** Executes a command and replies to it. @param now_ns  MonotonicNs(). */
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
@@ -177,6 +187,7 @@ class Hub {
   void BroadcastStudyState();
   void SendTo(const Client& client, const Json& event, const std::string& text);
 
+  void SendReply(ClientLink* link, const Result<Json>& command, const Result<Json>& result);
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
   /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */

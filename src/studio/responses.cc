@@ -6,7 +6,7 @@
 
 #include "studio/assets.h"
 #include "studio/gzip.h"
-#include "studio/recording.h"
+#include "studio/record_parts.h"
 #include "studio/scene_json.h"
 
 namespace hvas::studio {
@@ -97,22 +97,23 @@ Result<Response> MakePathResponse(const Sweeper& sweeper, std::string_view name)
 }
 
 /** @param rest  Path below /api/recordings/: id, and the resource of it. */
-Result<Response> MakeRecordingResponse(RecordingShelf* shelf, std::string_view rest) {
+Result<Response> MakeRecordingResponse(RecordingShelf* shelf, std::string_view rest,
+                                       const std::stop_token& stop) {
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string id(rest.substr(0, slash));
   const std::string_view what = rest.substr(slash);
   if (what.empty()) {
-    const auto description = shelf->Describe(id);
-    return description ? MakeOwnedResponse(*description) : Unexpected(description.error());
+    return MakeOwnedResponse(kJsonType, shelf->Describe(id, stop));
   }
   if (what == "/frames") {
-    return MakeOwnedResponse("application/octet-stream", shelf->ReadFrames(id));
+    return MakeOwnedResponse("application/octet-stream",
+                             shelf->Read(id, RecordPart::kFrames, stop));
   }
   if (what == "/scene") {
-    return MakeOwnedResponse(kJsonType, shelf->ReadAttachment(id, kSceneAttachment));
+    return MakeOwnedResponse(kJsonType, shelf->Read(id, RecordPart::kScene, stop));
   }
   if (what == "/model.glb") {
-    return MakeOwnedResponse(kGlbType, shelf->ReadAttachment(id, kGlbAttachment));
+    return MakeOwnedResponse(kGlbType, shelf->Read(id, RecordPart::kModel, stop));
   }
   if (what == "/file") {
     auto file = shelf->Find(id);
@@ -153,7 +154,7 @@ Result<Response> MakeAssetResponse(std::string_view path, std::string_view accep
 }
 
 Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded,
-                                 std::string_view accepted) {
+                                 std::string_view accepted, const std::stop_token& stop) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
@@ -164,7 +165,7 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
     return FailNotFound(path);
   }
   if (path == "/api/recordings") {
-    return MakeOwnedResponse(workbench->recordings().shelf().List());
+    return MakeOwnedResponse(workbench->recordings().shelf().List(stop));
   }
   if (path.starts_with(kModel)) {
     return MakeModelResponse(workbench->live(), path.substr(kModel.size()), accepted);
@@ -173,7 +174,8 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
     return MakePathResponse(workbench->sweeper(), path.substr(kPath.size()));
   }
   if (path.starts_with(kRecording)) {
-    return MakeRecordingResponse(&workbench->recordings().shelf(), path.substr(kRecording.size()));
+    return MakeRecordingResponse(&workbench->recordings().shelf(), path.substr(kRecording.size()),
+                                 stop);
   }
   return FailNotFound(path);
 }
