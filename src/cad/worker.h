@@ -25,8 +25,8 @@ using hvas::kWorkerUsage;
 
 /** Where a program is looked for that is installed beside this one. */
 struct WorkerPlace {
-  const char* name;      ///< Of its file.
-  const char* variable;  ///< Of the environment; it may have the path.
+  const char* name;      ///< Name of its file.
+  const char* variable;  ///< Variable of the environment that may have its path.
   const char* built;     ///< Path in the build tree.
 };
 

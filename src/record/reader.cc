@@ -28,7 +28,7 @@ struct TableLimits {
   bool has_ids;              ///< The first column is a number that grows from row to row.
 };
 
-constexpr std::uint64_t kMostText = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMostText = std::uint64_t{1} << 30;  // A choice.
 constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();  // One at a time.
 constexpr TableLimits kMetaLimits{"entries", 1000, kMostText / 4, false};
 constexpr TableLimits kAttachmentLimits{"attachments", 100, kMostText / 1024, false};
@@ -255,7 +255,7 @@ Result<std::vector<Event>> Reader::ReadEvents() {
   const Result<void> done =
       ForEachRow(&*rows, kEventLimits, path_.string(), [&](const Statement& row) -> Result<bool> {
         Event event{row.ReadInt(1), row.ReadText(2), kNoOccurrence, row.ReadText(4)};
-        constexpr std::int64_t kNone = -1;
+        constexpr std::int64_t kNone = -1;  // The query gives it for NULL.
         const std::int64_t occurrence = row.ReadInt(3);
         if (occurrence < kNone || occurrence >= std::int64_t{kNoOccurrence}) {
           return Damaged(fmt::format("Event {}", row.ReadInt(0)));

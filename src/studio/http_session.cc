@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
@@ -21,6 +23,7 @@
 #include "studio/json_fields.h"
 #include "studio/responses.h"
 #include "studio/socket_session.h"
+#include "studio/upload_file.h"
 
 namespace hvas::studio {
 namespace {
@@ -326,32 +329,65 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!IsShort(shared_->options.max_upload)) {
       return;
     }
-    const std::string name = NameOfUpload(ToView(header_->get().target()));
-    const std::filesystem::path folder = shared_->options.upload_folder / MakeToken();
-    std::error_code failed;
-    std::filesystem::create_directory(folder, failed);
-    const std::filesystem::path file = folder / name;
-    auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
-    parser->body_limit(shared_->options.max_upload);
-    error_code error;
-    parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
-    if (failed || error) {
-      return Refuse(
-          http::status::insufficient_storage,
-          {ErrorCode::kOutOfResource, "the file cannot be saved", name, "free disk space"});
-    }
+    std::string name = NameOfUpload(ToView(header_->get().target()));
+    auto upload = std::make_shared<Upload>(
+        std::move(*header_), shared_->options.upload_folder / MakeToken(), std::move(name));
+    upload->parser.body_limit(shared_->options.max_upload);
     wire().expires_after(kUploadTime);
-    http::async_read(
-        connection_, buffer_, *parser,
-        [self = shared_from_this(), parser, folder, file, name](error_code read, std::size_t) {
-          parser->get().body().close();
-          if (read) {
-            std::error_code ignored;
-            std::filesystem::remove_all(folder, ignored);
-            return self->RefuseBody(read);
-          }
-          self->SendJson(http::status::ok, {{"upload", self->shared_->hub.AddUpload(file, name)}});
+    SaveUpload(std::move(upload), true);
+  }
+
+  /** A body on its way into a file. */
+  struct Upload {
+    Upload(Header&& header, std::filesystem::path folder, std::string name)
+        : file(std::move(folder), std::move(name)), parser(std::move(header)) {}
+
+    UploadFile file;
+    http::request_parser<http::buffer_body> parser;
+    std::vector<std::byte> piece = std::vector<std::byte>(64 << 10);  // [bytes]: a choice.
+    std::size_t received{0};                                          ///< Bytes in the piece.
+  };
+
+  /** The disk lane makes the file, or adds the piece that was received; then the network thread
+   reads the next one. */
+  void SaveUpload(std::shared_ptr<Upload> upload, bool is_first) {
+    shared_->lanes->Post(
+        AnswerLanes::Lane::kDisk, [self = shared_from_this(), upload = std::move(upload),
+                                   is_first](const std::stop_token& /*stop*/) mutable {
+          auto saved = is_first
+                           ? upload->file.Create()
+                           : upload->file.Add(std::span(upload->piece).first(upload->received));
+          const auto executor = self->connection_.get_executor();
+          asio::post(executor, [self = std::move(self), upload = std::move(upload),
+                                saved = std::move(saved)]() mutable {
+            if (saved) {
+              self->ReadUploadPiece(std::move(upload));
+            } else {
+              self->Refuse(http::status::insufficient_storage, saved.error());
+            }
+          });
         });
+  }
+
+  void ReadUploadPiece(std::shared_ptr<Upload> upload) {
+    if (upload->parser.is_done()) {
+      const std::string name = upload->file.name();
+      return SendJson(http::status::ok,
+                      {{"upload", shared_->hub.AddUpload(upload->file.Keep(), name)}});
+    }
+    auto& body = upload->parser.get().body();
+    body.data = upload->piece.data();
+    body.size = upload->piece.size();
+    auto& parser = upload->parser;
+    http::async_read(connection_, buffer_, parser,
+                     [self = shared_from_this(), upload = std::move(upload)](error_code error,
+                                                                             std::size_t) mutable {
+                       if (error && error != http::error::need_buffer) {
+                         return self->RefuseBody(error);
+                       }
+                       upload->received = upload->piece.size() - upload->parser.get().body().size;
+                       self->SaveUpload(std::move(upload), false);
+                     });
   }
 
   void RefuseBody(error_code error) {

@@ -167,9 +167,13 @@ class Hub {
   Result<Json> DoHands(const protocol::HandsCommand& command);
   Result<Json> DoDevices();
   Result<Json> DoUse(const protocol::UseCommand& command);
-  Result<Json> DoRecord(const protocol::RecordCommand& command);
-  Result<Json> DoRenameRecording(const protocol::RenameRecordingCommand& command);
-  Result<Json> DoDeleteRecording(const protocol::DeleteRecordingCommand& command);
+  /** Leaves what accesses the disk to another thread, and the reply until then. */
+  Result<Json> DoLater(const Caller& caller, std::function<Result<void>()> work);
+  Result<Json> DoRecord(const Caller& caller, const protocol::RecordCommand& command);
+  Result<Json> DoRenameRecording(const Caller& caller,
+                                 const protocol::RenameRecordingCommand& command);
+  Result<Json> DoDeleteRecording(const Caller& caller,
+                                 const protocol::DeleteRecordingCommand& command);
   template <typename Fields>
   Result<Json> DoEdit(const Fields& command);
   Result<Json> DoMeasure(const protocol::MeasureCommand& command);
