@@ -167,7 +167,7 @@ std::string MakeUri(const std::filesystem::path& path) {
 /** Whether the files that SQLite opens beside one are regular files, as far as they are there. */
 Result<void> CheckSideFiles(const std::filesystem::path& path) {
   for (const char* suffix : {"-wal", "-shm", "-journal"}) {
-    const auto checked = CheckRegularFile(path.string() + suffix);
+    auto checked = CheckRegularFile(path.string() + suffix);
     if (!checked && checked.error().code != ErrorCode::kNotFound) {
       return checked;
     }

@@ -28,7 +28,7 @@ struct TableLimits {
   bool has_ids;              ///< The first column is a number that grows from row to row.
 };
 
-constexpr std::uint64_t kMostText = std::uint64_t{1} << 30;  // A choice.
+constexpr std::uint64_t kMostText = std::uint64_t{1} << 30;                     // A choice.
 constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();  // One at a time.
 constexpr TableLimits kMetaLimits{"entries", 1000, kMostText / 4, false};
 constexpr TableLimits kAttachmentLimits{"attachments", 100, kMostText / 1024, false};
@@ -132,7 +132,7 @@ Result<void> Reader::CheckKind() {
                 path_.string(), "record the session again");
   }
   const std::string newest = ListTables(kSchemaVersion);
-  if (const auto checked = CheckTable(&database_, newest, "schema_version"); !checked) {
+  if (auto checked = CheckTable(&database_, newest, "schema_version"); !checked) {
     return checked;
   }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");

@@ -1,5 +1,6 @@
 #include "studio/record_process.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -26,8 +27,8 @@ Result<std::string> UnpackOutcome(std::string_view bytes, const std::filesystem:
   }
   const Json json =
       bytes.empty() ? Json() : Json::parse(bytes.substr(1), nullptr, /*allow_exceptions=*/false);
-  const auto code =
-      session::IndexOr(json, "code", static_cast<std::uint32_t>(ErrorCode::kInternal));
+  constexpr auto kLast = static_cast<std::uint32_t>(ErrorCode::kInternal);
+  const auto code = std::min(session::IndexOr(json, "code", kLast), kLast);
   return Fail(
       static_cast<ErrorCode>(code), session::TextOr(json, "message", "the record cannot be read"),
       file.filename().string(), session::TextOr(json, "remedy", "restore the file from a copy"));

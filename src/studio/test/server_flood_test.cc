@@ -1,12 +1,14 @@
 // Forces off reaches the run whatever else the server is asked for, and what takes long is done by
 // others than the network thread.
 
-#include <sys/stat.h>
-
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -67,7 +69,7 @@ class FloodTest : public ServerTest {
   }
 
   /** Requests something, and does not wait for the response. */
-  std::unique_ptr<RawClient> Request(Role role, const std::string& target) {
+  std::unique_ptr<RawClient> SendGet(Role role, const std::string& target) {
     auto client = Connect();
     client->Send({"GET", target, {{"Host", host()}, {"Cookie", CookieOf(role)}}, ""});
     return client;
@@ -93,7 +95,7 @@ TEST_F(FloodTest, ForcesOffAndThePagePassRecordsThatAreNeverRead) {
   for (int i = 0; i < 8; ++i) {
     for (const char* target : {"/api/recordings", "/api/recording/a", "/api/recording/a/frames",
                                "/api/recording/a/scene"}) {
-      waiting.push_back(Request(Role::kViewer, target));
+      waiting.push_back(SendGet(Role::kViewer, target));
     }
   }
   ASSERT_TRUE(hvas::testing::AwaitTrue([&] { return std::filesystem::exists(begun); }));
