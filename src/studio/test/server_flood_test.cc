@@ -104,6 +104,22 @@ TEST_F(FloodTest, ForcesOffAndThePagePassRecordsThatAreNeverRead) {
   ExpectForcesOffWork(steering.get());
 }
 
+TEST_F(FloodTest, ForcesOffPassesUploadsAndConnectionsOfViewers) {
+  const auto steering = Join(Role::kOperator);
+  EXPECT_FALSE(AwaitEvent(steering.get(), "hello").is_null());
+  std::vector<std::unique_ptr<RawClient>> flood;
+  for (int i = 0; i < 10; ++i) {
+    flood.push_back(Connect());
+    flood.back()->Send("POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
+                       "\r\nOrigin: " + origin() + "\r\nCookie: " + CookieOf(Role::kOperator) +
+                       "\r\nContent-Length: 9000\r\n\r\n" + std::string(4000, 'x'));
+  }
+  for (int i = 0; i < 30; ++i) {
+    flood.push_back(SendGet(Role::kViewer, "/api/scene"));
+  }
+  ExpectForcesOffWork(steering.get());
+}
+
 TEST_F(FloodTest, RecordThatEndsItsReaderIsAnErrorAndNoEndOfTheStudio) {
   Record({}, {});
   ReadRecordsBy("kill -SEGV $$");
