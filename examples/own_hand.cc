@@ -36,6 +36,10 @@ int main(int argc, char** argv) {
 
   // The second step of the sequence; the part begins 10 mm beyond where it engages.
   hvas::assembly::SteppedOptions options;
+  if (options.step >= (*model)->sequence.steps.size()) {
+    std::fprintf(stderr, "%s: there is no second part to put in\n", argv[1]);
+    return 1;
+  }
   const hvas::simulation::SequenceStep& step = (*model)->sequence.steps[options.step];
   const hvas::spatial::Pose& goal = (*model)->bodies[step.occurrence.index()].X_WB_goal;
   double travel = step.engage_distance + 10e-3;

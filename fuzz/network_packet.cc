@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "device/driver.h"
 #include "device/drivers/network_protocol.h"
 #include "fuzz/target.h"
 
@@ -36,8 +37,9 @@ void ReadAll(const Opened& opened) {
   const int readable = static_cast<int>(Read(opened, &hello)) + Read(opened, &welcome) +
                        Read(opened, &state) + Read(opened, &wrench) + Read(opened, &bye);
   Check(readable <= (opened.refusal == Refusal::kNone ? 1 : 0));
-  if (Read(opened, &hello) && IsPlausible(hello)) {
-    const device::DeviceInfo info = InfoOf(hello, "");
+  const bool is_hello = Read(opened, &hello);
+  const device::DeviceInfo info = InfoOf(hello, "");
+  if (is_hello && device::CheckInfo(info)) {
     Check(info.profile.max_force >= info.profile.continuous_force);
     Check(info.profile.rate_hz > 0 && info.profile.workspace.minCoeff() > 0);
   }

@@ -34,19 +34,19 @@ inline constexpr std::array<Place, 8> kScrews{
     {{36, 50}, {36, 18}, {36, -18}, {36, -50}, {-36, -50}, {-36, -18}, {-36, 18}, {-36, 50}}};
 inline constexpr std::array<Place, 2> kDowels{{{20, 55}, {-20, -55}}};
 
-[[nodiscard]] Solid MakeHousing();      ///< In the pump's frame.
+[[nodiscard]] Solid MakeHousing();      ///< Lies in the pump's frame.
 [[nodiscard]] Solid MakeCover();        ///< Back face at z = 0.
-[[nodiscard]] Solid MakeGasket();       ///< From z = 0 to kGasket.
-[[nodiscard]] Solid MakeDriveShaft();   ///< On its own axis, z as in the pump.
-[[nodiscard]] Solid MakeDrivenShaft();  ///< The same; the middle of a tooth at x.
-[[nodiscard]] Solid MakeBushing();      ///< From z = 0 to 18.
-[[nodiscard]] Solid MakeOilSeal();      ///< From z = 0 to 7.
-[[nodiscard]] Solid MakeDowel();        ///< From z = 0 to 24.
+[[nodiscard]] Solid MakeGasket();       ///< Reaches from z = 0 to kGasket.
+[[nodiscard]] Solid MakeDriveShaft();   ///< Lies on its own axis, z as in the pump.
+[[nodiscard]] Solid MakeDrivenShaft();  ///< Lies on its own axis; the middle of a tooth at x.
+[[nodiscard]] Solid MakeBushing();      ///< Reaches from z = 0 to 18.
+[[nodiscard]] Solid MakeOilSeal();      ///< Reaches from z = 0 to 7.
+[[nodiscard]] Solid MakeDowel();        ///< Reaches from z = 0 to 24.
 [[nodiscard]] Solid
-MakeKey();  ///< On the drive shaft's axis, middle of the key at z = 0, key at +y.
-[[nodiscard]] Solid MakeCouplingHub();  ///< From z = 0 to kHubLength, keyway at +y.
-[[nodiscard]] Solid MakeEndDisc();      ///< From z = 0 to 4.
-[[nodiscard]] Solid MakeLockWasher();   ///< From z = 0 to kLockWasher.
+MakeKey();  ///< Lies on the drive shaft's axis, middle of the key at z = 0, key at +y.
+[[nodiscard]] Solid MakeCouplingHub();  ///< Reaches from z = 0 to kHubLength, keyway at +y.
+[[nodiscard]] Solid MakeEndDisc();      ///< Reaches from z = 0 to 4.
+[[nodiscard]] Solid MakeLockWasher();   ///< Reaches from z = 0 to kLockWasher.
 [[nodiscard]] Solid MakeHoseNipple();   ///< Thread below z = 0, hexagon above.
 [[nodiscard]] Solid MakeBleedPlug();    ///< Thread below z = 0, hexagon above.
 

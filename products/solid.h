@@ -80,11 +80,12 @@ struct XZ {
                             const gp_Dir& x_axis);
 [[nodiscard]] gp_Trsf RotationAboutZ(double angle);
 
-/** Of the shape itself, by the kernel's fast rule: faces bounded by splines come out to about 1e-4.
+/** Volume of the shape itself, by the kernel's fast rule: faces bounded by splines come out to
+ * about 1e-4.
  */
 [[nodiscard]] double CalcVolume(const TopoDS_Shape& shape);
 
-/** Of the shape itself, by the kernel's adaptive rule, to 1e-6 or better. */
+/** Volume of the shape itself, by the kernel's adaptive rule, to 1e-6 or better. */
 [[nodiscard]] double CalcVolumeFinely(const TopoDS_Shape& shape);
 
 /** Integral of `f` over [a, b] by Gauss-Legendre on `panels` panels of five points. */

@@ -10,7 +10,7 @@ namespace hvas::bench {
 /** How a method answers along one of the tests of accuracy. */
 struct AccuracyRow {
   std::string test, method;
-  double depth_error_mean{0}, depth_error_max{0};  ///< Of the deepest contact [m].
+  double depth_error_mean{0}, depth_error_max{0};  ///< Error of the deepest contact [m].
   double force_change{0};                          ///< Largest, of the pooled force, per ms [N].
   int poses{0};
 };
@@ -23,7 +23,7 @@ using MakeMethod =
 
 struct AccuracyEntrant {
   std::string name;
-  double deviation{1e-6};   ///< Of the mesh that a method on triangles gets [m].
+  double deviation{1e-6};   ///< Deviation of the mesh that a method on triangles gets [m].
   std::size_t at_least{0};  ///< Triangles.
   int poses{200};
   MakeMethod make;

@@ -35,10 +35,10 @@ class Method {
   virtual void Load(std::size_t held, const std::vector<PlacedPart>& scene) = 0;
   /** Finds all that it can; returns how many contacts it found. */
   virtual std::size_t Query(const spatial::Pose& X_WH) = 0;
-  /** Of the last query; empty where the method tells yes or no only. */
+  /** Contacts of the last query; empty where the method tells yes or no only. */
   [[nodiscard]] virtual std::span<const FoundContact> contacts() = 0;
 
-  /** Of the last query: K sum(d^2 n) / sum(d), for K of 1 N/mm [N]. */
+  /** Force of the last query: K sum(d^2 n) / sum(d), for K of 1 N/mm [N]. */
   [[nodiscard]] virtual Vec3 PooledForce();
 
   [[nodiscard]] virtual Effort effort() const { return {}; }

@@ -24,12 +24,12 @@ struct BenchPart {
 enum PartNumber : std::size_t {
   kShaft,
   kBushing,
-  kHousing,     ///< Of the gear pump, with its bushings and gasket as one solid.
+  kHousing,     ///< Housing of the gear pump, with its bushings and gasket as one solid.
   kDriveGear,   ///< Drive gear shaft.
   kDrivenGear,  ///< Driven gear shaft.
-  kCover,       ///< With its bushings as one solid.
+  kCover,       ///< One solid with its bushings.
   kDowel,       ///< 5.98 mm for holes of 6 mm.
-  kStud,        ///< With rings for a thread.
+  kStud,        ///< Has rings for a thread.
   kHub,         ///< Filler, as the next two.
   kNippleBody,
   kSeal,

@@ -13,7 +13,7 @@ namespace hvas::bench {
 struct PeerMesh {
   std::vector<Vec3> vertices_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> face;  ///< Of each triangle: the CAD face it belongs to.
+  std::vector<std::uint32_t> face;  ///< CAD face that each triangle belongs to.
   std::size_t face_count{0};
 };
 

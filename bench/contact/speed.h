@@ -11,8 +11,8 @@ namespace hvas::bench {
 
 /** A method as the table of speed names it. */
 struct Entrant {
-  std::string name;        ///< For --methods.
-  int poses{kTrackPoses};  ///< Of each track, evenly spread: the slow ones are asked fewer.
+  std::string name;        ///< Methods of --methods.
+  int poses{kTrackPoses};  ///< Poses of each track, evenly spread: the slow ones are asked fewer.
   int passes{5};
   std::function<std::unique_ptr<Method>()> make;
 };
@@ -21,11 +21,11 @@ struct SpeedRow {
   std::string track, method;
   std::size_t scene{0};
   int poses{0}, passes{0};
-  Spread time;         ///< Of the least time of each pose over the passes [s].
-  double ratio{0};     ///< Of the median to that of the first entrant on the same poses.
+  Spread time;         ///< Median of the least time of each pose over the passes [s].
+  double ratio{0};     ///< Ratio of the median to that of the first entrant on the same poses.
   double contacts{0};  ///< Mean over the poses.
   double touching{0};  ///< Part of the poses with a contact.
-  Spread depth;        ///< Of the deepest contact of each pose [m].
+  Spread depth;        ///< Depth of the deepest contact of each pose [m].
   Spread points;       ///< Tested.
   Spread candidates;
   Spread bodies;

@@ -49,6 +49,7 @@ struct StudioOptions {
   std::vector<std::string> hosts;    ///< Further names of this machine.
   studio::TlsFiles tls;              ///< Empty: a certificate of our own.
   std::filesystem::path recordings;  ///< Empty: the user's own.
+  std::vector<std::string> devices;  ///< Addresses that the page can choose from besides.
   std::uint64_t seed{1};             ///< Any number: the actual sizes of the fits follow from it.
   double rate_hz{1000};              ///< X4 asks for 1 kHz.
   haptics::PaperGuidance guidance;
@@ -109,6 +110,7 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   constexpr std::uint32_t kBelowRecordings = 0x3FFFFFFF;  // which begin above it, in the page
   bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
+  bench.devices = options.devices;
   bench.guidance = options.guidance;
   bench.scenes.shape_cache = assembly::MakeShapeCache(CacheDirectory(options.load));
   LoadOptions load = options.load;
@@ -312,6 +314,7 @@ Result<void> Serve(const StudioOptions& options, const studio::StateFolder& fold
   served.port = options.port;
   served.upload_folder = folder.uploads();
   served.access_file = folder.access_file();
+  served.audit_file = folder.audit_file();
   served.reachable = ListReachable();
   std::string about_certificate;
   if (!options.listen.empty()) {
@@ -401,6 +404,7 @@ constexpr const char* kStudioFooter =
     "  hvas studio products/nut_bolt.step --threads-turn\n"
     "  hvas studio --study fit-2016 --participant P01 -o fits\n"
     "  hvas studio pump.step --port 8080 --no-open\n"
+    "  hvas studio pump.step --device plugin:./my_device.so\n"
     "  hvas studio pump.step --listen 192.168.1.5 --port 8443\n"
     "  hvas studio pump.step --listen 0.0.0.0 --host workshop.local\n"
     "  hvas studio --listen 0.0.0.0 --host studio.example --certificate full.pem --key key.pem";
@@ -457,6 +461,9 @@ void AddStudio(CLI::App* app, int* status) {
                     "Make new links, and revoke those of the previous start");
   command->add_option("--recordings", options->recordings,
                       "Folder for recordings; default ~/.local/share/hvas/recordings");
+  command->add_option("--device", options->devices,
+                      "Device that the page offers besides those of this machine, as of "
+                      "`hvas assemble --device`; may be given several times");
   AddStudyOptions(command, options.get());
   command->add_option("--seed", options->seed, "Seed of the parts' actual sizes and of the study")
       ->capture_default_str();

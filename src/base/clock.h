@@ -32,7 +32,7 @@ class Clock {
   [[nodiscard]] virtual std::int64_t NowNs() const noexcept = 0;
 };
 
-/** The machine's own: MonotonicNs(). */
+/** The machine's own, which goes on while the machine is suspended. */
 [[nodiscard]] const Clock& SystemClock() noexcept;
 
 /** Time that stands still until somebody moves it on. */

@@ -9,13 +9,14 @@
 namespace hvas {
 namespace {
 
+/** SystemClock() to wait by: the time for which the machine was suspended counts. */
 class MachineLoopClock final : public LoopClock {
  public:
-  [[nodiscard]] std::int64_t NowNs() const noexcept override { return MonotonicNs(); }
+  [[nodiscard]] std::int64_t NowNs() const noexcept override { return ReadClock(CLOCK_BOOTTIME); }
 
   void WaitUntil(std::int64_t t_ns, const std::function<bool()>& /*is_over*/) noexcept override {
     const timespec deadline{t_ns / kNsPerSecond, t_ns % kNsPerSecond};
-    while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
+    while (::clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
     }
   }
 

@@ -35,7 +35,7 @@ class LoopClock : public Clock {
   [[nodiscard]] virtual bool is_steered() const noexcept = 0;
 };
 
-/** The machine's clock, which waits for nobody. */
+/** The machine's clock (SystemClock), which waits for nobody. */
 [[nodiscard]] LoopClock& MachineClock() noexcept;
 
 /** Time that its owner lets go on, and that waits for all threads that entered: it moves from

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/digest.h"
+#include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "mates/side_file.h"
 
@@ -121,7 +122,7 @@ Result<CampaignFolder> CampaignFolder::Open(const std::filesystem::path& path) {
   if (!text || !copy) {
     return Unexpected((text ? copy : text).error());
   }
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = ParseJson<Json>(*text);
   if (!json.is_object() || json.value("schema", "") != kFolderSchema) {
     return FailFolder(file, "it has no campaign");
   }

@@ -60,17 +60,26 @@ class Driver {
 
   [[nodiscard]] std::string_view address_help() const { return words_.address_help; }
 
-  /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go. */
-  [[nodiscard]] virtual ProbeReport Probe(const Surroundings& surroundings,
-                                          bool opens_devices) const = 0;
+  /** Looks for devices; `opens_devices`: starts each that it finds, without force, and lets go.
+   What CheckInfo() refuses is a problem. */
+  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings, bool opens_devices) const;
 
   /** Opens a device.
    @param address  What follows the driver's name and a colon; empty: the first one found.
-   Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy. */
-  [[nodiscard]] virtual Result<std::unique_ptr<Device>> Open(
-      const std::string& address, const Surroundings& surroundings) const = 0;
+   Errors: kNotFound, kUnsupported, kOutOfResource..., each with the remedy; those of CheckInfo().
+ */
+  [[nodiscard]] Result<std::unique_ptr<Device>> Open(const std::string& address,
+                                                     const Surroundings& surroundings) const;
 
  protected:
+  /** Probes, whatever the devices say of themselves. */
+  [[nodiscard]] virtual ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                                   bool opens_devices) const = 0;
+
+  /** Opens a device, whatever it says of itself. */
+  [[nodiscard]] virtual Result<std::unique_ptr<Device>> OpenUnchecked(
+      const std::string& address, const Surroundings& surroundings) const = 0;
+
   /** A report with nothing in it yet. */
   [[nodiscard]] ProbeReport BeginReport() const {
     return {std::string(name()), std::string(title()), {}, {}, {}};
@@ -79,6 +88,12 @@ class Driver {
  private:
   DriverWords words_;
 };
+
+/** Checks what a device says of itself, whoever made its driver: all devices pass here, by
+ Driver::Open and Driver::Probe. Figures are those of CheckProfile(), texts are UTF-8 without
+ control characters, axes and buttons as Capabilities has them. Errors: kInvalid names the device,
+ the field, its value and what is possible. */
+[[nodiscard]] Result<void> CheckInfo(const DeviceInfo& info);
 
 /** All drivers, in the order in which they are tried. */
 [[nodiscard]] const std::vector<const Driver*>& Drivers();

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "device/known_profiles.h"
 
 namespace hvas::device {
@@ -19,37 +20,57 @@ using nlohmann::json;
 // The version of profiles that is read (data/schemas/device_profile.schema.json).
 constexpr int kSchema = 1;
 
+/** A figure of a profile, and what it can be. */
 struct Figure {
   const char* key;
   double DeviceProfile::*member;
+  double least;  ///< 0 is allowed besides where `may_be_zero`.
+  double most;
   bool may_be_zero;
 };
 
+// Between what is too little to be felt or sensed and some times what the strongest, largest and
+// fastest haptic devices have (250 N, 3 m, 20 kHz): beyond that, a figure is a mistake. Choices.
 constexpr std::array kFigures{
-    Figure{"max_force_n", &DeviceProfile::max_force, true},
-    Figure{"continuous_force_n", &DeviceProfile::continuous_force, true},
-    Figure{"max_torque_nm", &DeviceProfile::max_torque, true},
-    Figure{"continuous_torque_nm", &DeviceProfile::continuous_torque, true},
-    Figure{"max_stiffness_n_per_m", &DeviceProfile::max_stiffness, true},
-    Figure{"max_damping_ns_per_m", &DeviceProfile::max_damping, true},
-    Figure{"max_rotational_stiffness_nm_per_rad", &DeviceProfile::max_rotational_stiffness, true},
-    Figure{"max_rotational_damping_nms_per_rad", &DeviceProfile::max_rotational_damping, true},
-    Figure{"position_resolution_m", &DeviceProfile::position_resolution, true},
-    Figure{"rotation_resolution_rad", &DeviceProfile::rotation_resolution, true},
-    Figure{"rate_hz", &DeviceProfile::rate_hz, false},
-    Figure{"mass_kg", &DeviceProfile::mass, false},
-    Figure{"inertia_kg_m2", &DeviceProfile::inertia, false},
-    Figure{"damping_ns_per_m", &DeviceProfile::damping, true},
-    Figure{"rotational_damping_nms_per_rad", &DeviceProfile::rotational_damping, true},
-    Figure{"friction_n", &DeviceProfile::friction, true},
-    Figure{"rotational_friction_nm", &DeviceProfile::rotational_friction, true},
-    Figure{"delay_s", &DeviceProfile::delay, true},
+    Figure{"max_force_n", &DeviceProfile::max_force, 0.01, 1000, true},
+    Figure{"continuous_force_n", &DeviceProfile::continuous_force, 1e-3, 1000, true},
+    Figure{"max_torque_nm", &DeviceProfile::max_torque, 1e-4, 200, true},
+    Figure{"continuous_torque_nm", &DeviceProfile::continuous_torque, 1e-5, 200, true},
+    Figure{"max_stiffness_n_per_m", &DeviceProfile::max_stiffness, 1, 1e6, true},
+    Figure{"max_damping_ns_per_m", &DeviceProfile::max_damping, 1e-3, 1e4, true},
+    Figure{"max_rotational_stiffness_nm_per_rad", &DeviceProfile::max_rotational_stiffness, 1e-4,
+           1e4, true},
+    Figure{"max_rotational_damping_nms_per_rad", &DeviceProfile::max_rotational_damping, 1e-6, 100,
+           true},
+    Figure{"position_resolution_m", &DeviceProfile::position_resolution, 1e-10, 0.01, true},
+    Figure{"rotation_resolution_rad", &DeviceProfile::rotation_resolution, 1e-8, 0.5, true},
+    Figure{"rate_hz", &DeviceProfile::rate_hz, 1, 1e5, false},
+    Figure{"mass_kg", &DeviceProfile::mass, 1e-4, 100, false},
+    Figure{"inertia_kg_m2", &DeviceProfile::inertia, 1e-9, 10, false},
+    Figure{"damping_ns_per_m", &DeviceProfile::damping, 1e-6, 1e4, true},
+    Figure{"rotational_damping_nms_per_rad", &DeviceProfile::rotational_damping, 1e-9, 100, true},
+    Figure{"friction_n", &DeviceProfile::friction, 1e-6, 100, true},
+    Figure{"rotational_friction_nm", &DeviceProfile::rotational_friction, 1e-9, 100, true},
+    Figure{"delay_s", &DeviceProfile::delay, 1e-7, 2, true},
 };
+// Edges of a workspace [m], as the figures above.
+constexpr double kLeastEdge = 1e-3;
+constexpr double kMostEdge = 50;
+constexpr double kRotationSlack = 1e-6;  // Error of the length of a unit quaternion: rounding.
 constexpr const char* kWorkspace = "workspace_m";
 
-Unexpected Invalid(const std::string& where, const std::string& key, const char* what) {
+Unexpected Invalid(const std::string& where, const std::string& key, const std::string& what) {
   return Fail(ErrorCode::kInvalid, fmt::format("\"{}\" {}", key, what), where,
               "see data/schemas/device_profile.schema.json");
+}
+
+/** What is impossible about a figure, with its value and its range; nothing where it can be. */
+std::string DescribeImpossible(const Figure& figure, double value) {
+  const bool is_possible =
+      (value >= figure.least && value <= figure.most) || (figure.may_be_zero && value == 0);
+  return is_possible ? ""
+                     : fmt::format("is {}, which is impossible: it must be {}{} to {}", value,
+                                   figure.may_be_zero ? "0, or " : "", figure.least, figure.most);
 }
 
 Result<const json*> FindFigure(const json& figures, const std::string& key,
@@ -102,12 +123,10 @@ Result<void> ReadFigures(const json& figures, const std::string& where, SourcedP
     if (!value) {
       return Unexpected(value.error());
     }
-    const double number = (*value)->is_number() ? (*value)->get<double>() : -1;
-    if (!std::isfinite(number) || number < 0 || (number == 0 && !figure.may_be_zero)) {
-      return Invalid(where, figure.key,
-                     figure.may_be_zero ? "must be 0 or more" : "must be above 0");
+    if (!(*value)->is_number()) {
+      return Invalid(where, figure.key, "must be a number");
     }
-    profile->profile.*figure.member = number;
+    profile->profile.*figure.member = (*value)->get<double>();
   }
   const auto value = FindFigure(figures, kWorkspace, where, profile);
   if (!value) {
@@ -116,11 +135,9 @@ Result<void> ReadFigures(const json& figures, const std::string& where, SourcedP
   const json& edges = **value;
   const bool is_box =
       edges.is_array() && edges.size() == 3 &&
-      std::all_of(edges.begin(), edges.end(), [](const json& edge) {
-        return edge.is_number() && edge.get<double>() > 0 && edge.get<double>() < 100;
-      });
+      std::all_of(edges.begin(), edges.end(), [](const json& edge) { return edge.is_number(); });
   if (!is_box) {
-    return Invalid(where, kWorkspace, "must be three edges of a box, each above 0");
+    return Invalid(where, kWorkspace, "must be the three edges of a box");
   }
   for (int k = 0; k < 3; ++k) {
     profile->profile.workspace[k] = edges[static_cast<std::size_t>(k)].get<double>();
@@ -147,7 +164,7 @@ std::vector<SourcedProfile> ReadKnownProfiles() {
 }  // namespace
 
 Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& where) {
-  const json document = json::parse(text, nullptr, false);
+  const json document = ParseJson<json>(text);
   if (!document.is_object()) {
     return Fail(ErrorCode::kUnreadable, "the file is not a JSON object", where,
                 "see data/schemas/device_profile.schema.json");
@@ -187,12 +204,39 @@ Result<SourcedProfile> ParseProfile(std::string_view text, const std::string& wh
   if (const auto read = ReadFigures(figures, where, &result); !read) {
     return Unexpected(read.error());
   }
-  const DeviceProfile& profile = result.profile;
-  if (profile.continuous_force > profile.max_force ||
-      profile.continuous_torque > profile.max_torque) {
-    return Invalid(where, "continuous_force_n", "or the torque is above its peak");
+  if (const auto checked = CheckProfile(result.profile, where); !checked) {
+    return Unexpected(checked.error());
   }
   return result;
+}
+
+Result<void> CheckProfile(const DeviceProfile& profile, const std::string& where) {
+  for (const Figure& figure : kFigures) {
+    if (const std::string problem = DescribeImpossible(figure, profile.*figure.member);
+        !problem.empty()) {
+      return Invalid(where, figure.key, problem);
+    }
+  }
+  constexpr Figure kEdge{kWorkspace, nullptr, kLeastEdge, kMostEdge, false};
+  for (const double edge : profile.workspace) {
+    if (const std::string problem = DescribeImpossible(kEdge, edge); !problem.empty()) {
+      return Invalid(where, kWorkspace, problem);
+    }
+  }
+  if (profile.continuous_force > profile.max_force) {
+    return Invalid(where, "continuous_force_n",
+                   fmt::format("is {}, which is above its peak, {}", profile.continuous_force,
+                               profile.max_force));
+  }
+  if (profile.continuous_torque > profile.max_torque) {
+    return Invalid(where, "continuous_torque_nm",
+                   fmt::format("is {}, which is above its peak, {}", profile.continuous_torque,
+                               profile.max_torque));
+  }
+  if (!(std::abs(profile.q_UD.norm() - 1) <= kRotationSlack)) {
+    return Invalid(where, "axes", "are no rotation");
+  }
+  return {};
 }
 
 const std::vector<SourcedProfile>& KnownProfiles() {

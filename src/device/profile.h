@@ -57,6 +57,11 @@ struct SourcedProfile {
  Errors: kUnreadable, kInvalid; both name `where` and the key. */
 Result<SourcedProfile> ParseProfile(std::string_view json, const std::string& where);
 
+/** Checks that a device can be as a profile says, wherever its figures come from: a file, a
+ plug-in, the network, a vendor's library. Errors: kInvalid names `where`, the key of the figure,
+ its value and what it may be. */
+[[nodiscard]] Result<void> CheckProfile(const DeviceProfile& profile, const std::string& where);
+
 /** All profiles that HVAS brings along, by id. */
 [[nodiscard]] const std::vector<SourcedProfile>& KnownProfiles();
 

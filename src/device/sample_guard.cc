@@ -24,6 +24,14 @@ double ShareOfAge(std::int64_t age_ns) noexcept {
   return std::clamp(1 - decayed, 0.0, 1.0);
 }
 
+double ForceHold::CalcShare(std::int64_t given_ns, std::int64_t now_ns) noexcept {
+  if (now_ns < shown_ns_ || now_ns - shown_ns_ > kAgeHeldNs) {
+    valid_ns_ = now_ns;
+  }
+  shown_ns_ = now_ns;
+  return given_ns < valid_ns_ ? 0 : ShareOfAge(now_ns - given_ns);
+}
+
 DeviceState SampleGuard::Accept(const DeviceState& sample) noexcept {
   constexpr double kClosed = 0.5;  // Half of a grip's way.
   DeviceState state = sample;

@@ -43,4 +43,18 @@ class SampleGuard {
  then linearly down to nothing in 50 ms, so that no force outlives who computed it (N6). RT-safe. */
 [[nodiscard]] double ShareOfAge(std::int64_t age_ns) noexcept;
 
+/** What a device's own thread may still show of the wrench that it was given last. After that
+ thread stood still it shows nothing of what was given before: the device has let go by then, and
+ the force would be back at once. One thread; RT-safe. */
+class ForceHold {
+ public:
+  /** Share of a wrench, as the thread is about to show it.
+   @param given_ns,now_ns  By one clock. */
+  [[nodiscard]] double CalcShare(std::int64_t given_ns, std::int64_t now_ns) noexcept;
+
+ private:
+  std::int64_t shown_ns_{0};  ///< Time of the last call.
+  std::int64_t valid_ns_{0};  ///< What was given before is void.
+};
+
 }  // namespace hvas::device

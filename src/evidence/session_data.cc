@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "haptics/constraint_solver.h"
 #include "session/json_values.h"
 
@@ -110,7 +111,7 @@ std::vector<std::string> ReadPaths(const record::Reader& reader) {
   if (found == reader.meta().end()) {
     return paths;
   }
-  const auto parts = nlohmann::json::parse(found->second, nullptr, false);
+  const auto parts = ParseJson<nlohmann::json>(found->second);
   for (const auto& part : parts) {
     paths.push_back(session::TextOr(part, "path", ""));
   }

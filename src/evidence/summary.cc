@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "evidence/session_data.h"
 #include "haptics/constraint_solver.h"
 #include "session/json_values.h"
@@ -110,7 +111,7 @@ Result<void> ReadEvents(record::Reader* reader, Summary* summary) {
   }
   for (record::Event& event : *events) {
     if (event.kind == "energy") {
-      const auto json = nlohmann::json::parse(event.json, nullptr, false);
+      const auto json = ParseJson<nlohmann::json>(event.json);
       const auto* force = session::FieldOf(json, "force");
       const std::size_t hand = session::IndexOr(json, "hand", 0);
       if (force != nullptr && hand < summary->hands.size()) {

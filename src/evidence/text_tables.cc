@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "evidence/given_parts.h"
 #include "evidence/output_file.h"
 #include "evidence/tables.h"
@@ -66,7 +67,7 @@ Result<std::string> MakeHead(record::Reader* reader, const record::Reader::Span&
     if (event.occurrence != record::kNoOccurrence) {
       item["occurrence"] = event.occurrence;
     }
-    Json details = Json::parse(event.json.empty() ? "{}" : event.json, nullptr, false);
+    Json details = ParseJson<Json>(event.json.empty() ? "{}" : event.json);
     item["details"] = details.is_discarded() ? Json(event.json) : std::move(details);
     list.push_back(std::move(item));
   }

@@ -29,6 +29,9 @@ spatial::Wrench DeviceOutput::Pass(const device::DeviceState& state, const TickC
   spatial::Wrench F_H_D = workspace.ToDevice(input.F_H_W);
   if (options_.controls_passivity) {
     F_H_D.f += CalcTorqueCue(F_H_D, state.X_DH.q());
+    if (SafetyGate::IsStall(context.since_write_ns)) {
+      passivity_.ForgetWritten();
+    }
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const spatial::Pose nowhere(Vec3::Constant(kNan));
     F_H_D = passivity_.Limit(input.is_usable ? state.X_DH : nowhere, F_H_D, input.stored,
@@ -39,6 +42,7 @@ spatial::Wrench DeviceOutput::Pass(const device::DeviceState& state, const TickC
   gate.is_stopped = gate.is_stopped || context.is_stopped;
   gate.has_engaged = input.has_engaged;
   gate.model_age = 1e-9 * static_cast<double>(context.model_age_ns);
+  gate.since_write_ns = context.since_write_ns;
   spatial::Wrench given = gate_.Pass(gate);
   if (options_.controls_passivity) {
     passivity_.Write(given);

@@ -39,6 +39,13 @@ void PassivityChannel::Lose() noexcept {
   lost_force_ = std::max(lost_force_, FindGiven(1 + limits_.delay).written.norm());
 }
 
+void PassivityChannel::ForgetWritten() noexcept {
+  given_.fill({});
+  wanted_ = v_ = moved_ = Vec3::Zero();
+  is_lost_ = false;
+  lost_force_ = 0;
+}
+
 void PassivityChannel::AddCredit(double energy) noexcept {
   if (energy > 0 && std::isfinite(energy)) {
     energy_ += energy;
@@ -153,6 +160,12 @@ void PassivityController::Write(const spatial::Wrench& F_H_D) noexcept {
 void PassivityController::Reset() noexcept {
   force_.Reset();
   torque_.Reset();
+}
+
+void PassivityController::ForgetWritten() noexcept {
+  force_.ForgetWritten();
+  torque_.ForgetWritten();
+  has_pose_ = false;
 }
 
 double CalcDelayTicks(const device::DeviceProfile& profile, double dt) noexcept {

@@ -60,6 +60,9 @@ class PassivityChannel {
 
   void Reset() noexcept { *this = PassivityChannel(limits_); }
 
+  /** The device has let go of all that was written: it does no work any more. */
+  void ForgetWritten() noexcept;
+
   /** What came in, less what went out and was forgotten, and what is owed [J]. Never below minus
    the reserve by more than the bound in docs/algorithms/stability.md. */
   [[nodiscard]] double energy() const noexcept { return energy_; }
@@ -138,6 +141,10 @@ class PassivityController {
 
   /** A device was opened, or a part taken anew: the account starts at zero. */
   void Reset() noexcept;
+
+  /** Nothing was written for so long that the device has let go (SafetyGate::IsStall): where the
+   hand went meanwhile is nobody's work, and no speed. To be called before Limit. */
+  void ForgetWritten() noexcept;
 
   [[nodiscard]] const PassivityChannel& force() const noexcept { return force_; }
 

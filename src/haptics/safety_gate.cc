@@ -7,6 +7,10 @@
 namespace hvas::haptics {
 namespace {
 
+// A write changes the force by no more than it may in this time, however late it is; but for a cut
+// [s]. Two periods of 1 kHz: a choice.
+constexpr double kMaxStep = 2e-3;
+
 bool IsFinite(const spatial::Wrench& F) noexcept {
   return F.f.allFinite() && F.t.allFinite();
 }
@@ -113,6 +117,8 @@ const char* ToString(GateAction action) noexcept {
       return "the device buzzed: open the grip and take the part again";
     case kGateKick:
       return "the device kicked: open the grip and take the part again";
+    case kGateStalled:
+      return "the program stood still";
   }
   return "unknown";
 }
@@ -152,6 +158,10 @@ spatial::Wrench SafetyGate::Pass(const spatial::Wrench& F_W, double dt) noexcept
 spatial::Wrench SafetyGate::Pass(const GateInput& input) noexcept {
   const double dt = input.dt > 0 && std::isfinite(input.dt) ? input.dt : 0.0;
   actions_ = kGatePassed;
+  if (IsStall(input.since_write_ns)) {
+    actions_ |= kGateStalled;
+    Restart();
+  }
   Watch(input);
   spatial::Wrench wanted = input.F;
   if (!IsFinite(wanted)) {
@@ -177,6 +187,17 @@ spatial::Wrench SafetyGate::Pass(const GateInput& input) noexcept {
   Advance(wanted.f, dt, &force_);
   Advance(wanted.t, dt, &torque_);
   return {torque_.last, force_.last};
+}
+
+/** The device shows nothing by now: the force begins at zero, and softly. What the hand did
+ meanwhile is no kick. A latch stays. */
+void SafetyGate::Restart() noexcept {
+  for (Channel* channel : {&force_, &torque_}) {
+    channel->last.setZero();
+    channel->cut_from = 0;
+  }
+  is_interrupted_ = true;
+  start_progress_ = 0;
 }
 
 /** Looks for kicks and buzzing under what was given last, and ends a latch. */
@@ -243,9 +264,10 @@ void SafetyGate::UpdateStart(const GateInput& input, bool is_interrupted, double
     torque_.start_limit = torque_.last.norm();
   }
   is_interrupted_ = is_interrupted;
-  start_progress_ = limits_.soft_start_time > 0
-                        ? std::min(1.0, start_progress_ + dt / limits_.soft_start_time)
-                        : 1;
+  start_progress_ =
+      limits_.soft_start_time > 0
+          ? std::min(1.0, start_progress_ + std::min(dt, kMaxStep) / limits_.soft_start_time)
+          : 1;
 }
 
 double SafetyGate::CalcLimit(const Channel& channel, std::uint32_t* why) const noexcept {
@@ -281,8 +303,9 @@ void SafetyGate::Advance(const Vec3& wanted, double dt, Channel* channel) noexce
   }
   const Vec3 step = target - channel->last;
   const double size = step.norm();
-  if (size > rate * dt) {
-    channel->last += rate * dt / size * step;
+  const double most = rate * (is_cut_ ? dt : std::min(dt, kMaxStep));
+  if (size > most) {
+    channel->last += most / size * step;
     actions_ |= why;
   } else {
     channel->last = target;

@@ -62,12 +62,13 @@ enum GateAction : std::uint32_t {
   kGateStopped = 1u << 10,    ///< The emergency stop is pressed: cut.
   kGateBuzz = 1u << 11,       ///< The handle buzzed: cut until the hand takes anew.
   kGateKick = 1u << 12,       ///< The handle kicked: cut until the hand takes anew.
+  kGateStalled = 1u << 13,    ///< Nothing was written for too long: starts from zero.
 };
 
 inline constexpr std::array kGateActions{
     kGateNotFinite, kGateMagnitude, kGateRate,       kGateThermal,  kGateSoftStart,
     kGateSpeed,     kGateLateModel, kGateLostClient, kGateNoDevice, kGateNotHeld,
-    kGateStopped,   kGateBuzz,      kGateKick};
+    kGateStopped,   kGateBuzz,      kGateKick,       kGateStalled};
 
 /** The reason in words, for one action. RT-safe. */
 [[nodiscard]] const char* ToString(GateAction action) noexcept;
@@ -101,6 +102,9 @@ struct GateInput {
   bool has_engaged{false};  ///< A part was taken or a mate captured in this tick.
   double model_age{0};      ///< Age of what F was computed from [s].
   double client_age{0};     ///< Since whoever asks for F was last heard of [s].
+  /** Time since the last write to the device, by the clock of the loop (WritePace) [ns]; 0: there
+   was none, or none that counts. Negative: nobody knows. */
+  std::int64_t since_write_ns{0};
 };
 
 /** What the gate is told of a device's state and of the wrench that the device is to be given. A
@@ -117,6 +121,13 @@ struct GateInput {
 class SafetyGate {
  public:
   explicit SafetyGate(const SafetyLimits& limits) noexcept;
+
+  /** Whether a device was without a write for so long that it has let go of its force, as drivers
+   (device::ForceHold) and the vendors' watchdogs do after 20 ms: what is written then finds a hand
+   that feels nothing. Also where the clock went back. */
+  [[nodiscard]] static constexpr bool IsStall(std::int64_t since_write_ns) noexcept {
+    return since_write_ns < 0 || since_write_ns > 20'000'000;
+  }
 
   /** Returns the wrench that may go to the device. Never not finite, never beyond the limits. */
   [[nodiscard]] spatial::Wrench Pass(const GateInput& input) noexcept;
@@ -144,6 +155,7 @@ class SafetyGate {
     Vec3 last{Vec3::Zero()};
   };
 
+  void Restart() noexcept;
   static Channel MakeChannel(double peak, double rate, double engage_rate, double continuous,
                              double thermal_time) noexcept;
   void Watch(const GateInput& input) noexcept;

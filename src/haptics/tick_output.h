@@ -36,9 +36,10 @@ struct GuidedAxis {
 
 /** What the loop knows at a tick besides the device's sample. */
 struct TickContext {
-  std::int64_t model_age_ns{0};  ///< Time since the physics loop last answered.
-  bool is_stopped{false};        ///< All forces are switched off.
-  int effort_level{0};           ///< The loop's own number of what SetEffort was given.
+  std::int64_t model_age_ns{0};    ///< Time since the physics loop last answered.
+  bool is_stopped{false};          ///< All forces are switched off.
+  int effort_level{0};             ///< The loop's own number of what SetEffort was given.
+  std::int64_t since_write_ns{0};  ///< Time since the last write to the device: see WritePace.
 };
 
 /** A contact of the held part that presses in one tick. */

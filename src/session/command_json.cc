@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parse_json.h"
 #include "session/tick_options_json.h"
 
 namespace hvas::session {
@@ -114,7 +115,7 @@ std::string MakeBeginningJson(const Beginning& beginning) {
 
 Result<Beginning> ParseBeginning(const std::string& text, std::size_t part_count) {
   constexpr const char* kWhat = "The beginning of a stretch";
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = ParseJson<Json>(text);
   JsonFields fields(json);
   Beginning beginning;
   for (const Json& hand : fields.Array("hands")) {
@@ -185,7 +186,7 @@ record::Command MakeCommand(const GivenCommand& given, const std::vector<PartSta
 Result<GivenCommand> ParseCommand(const record::Command& command,
                                   const std::vector<PartState>& before, std::size_t hands) {
   const std::string what = fmt::format("Command {}", command.number);
-  const Json json = Json::parse(command.json, nullptr, false);
+  const Json json = ParseJson<Json>(command.json);
   JsonFields fields(json);
   GivenCommand given;
   given.number = static_cast<std::uint32_t>(command.number);

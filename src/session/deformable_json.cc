@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/parse_json.h"
 #include "haptics/giving_curve.h"
 
 namespace hvas::session {
@@ -152,7 +153,7 @@ Result<std::vector<Deformable>> ReadDeformables(const product::Product& product,
                                                       : Unexpected(bytes.error());
   }
   const auto* text = reinterpret_cast<const char*>(bytes->data());
-  const Json list = Json::parse(text, text + bytes->size(), nullptr, false);
+  const Json list = ParseJson<Json>(std::string_view(text, bytes->size()));
   std::vector<Deformable> parts;
   if (!list.is_array()) {
     return parts;

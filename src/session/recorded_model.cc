@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/digest.h"
+#include "base/parse_json.h"
 #include "product/accessories.h"
 #include "product/product_io.h"
 #include "session/command_json.h"
@@ -233,8 +234,8 @@ Result<Json> ReadModelJson(record::Reader* reader) {
   if (!bytes) {
     return Unexpected(bytes.error());
   }
-  return Json::parse(reinterpret_cast<const char*>(bytes->data()),
-                     reinterpret_cast<const char*>(bytes->data() + bytes->size()), nullptr, false);
+  return ParseJson<Json>(
+      std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
 }
 
 }  // namespace

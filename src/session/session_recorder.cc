@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "haptics/safety_gate.h"
+#include "haptics/write_pace.h"
 #include "session/command_json.h"
 #include "session/flight_json.h"
 #include "session/recorded_model.h"
@@ -188,6 +189,8 @@ haptics::TickContext MakeTickContext(const record::TickRecord& tick) {
   context.model_age_ns = tick.model_age_ns;
   context.is_stopped = (tick.status & kStoppedStatus) != 0;
   context.effort_level = tick.effort_level;
+  context.since_write_ns =
+      (tick.status & haptics::kGateStalled) != 0 ? haptics::WritePace::kUnknownNs : 0;
   return context;
 }
 

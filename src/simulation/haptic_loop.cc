@@ -16,7 +16,8 @@ bool IsFault(const device::DeviceState& before, std::uint32_t actions_before,
   // What the flight recorder is for.
   constexpr std::uint32_t kFaults = haptics::kGateNotFinite | haptics::kGateLateModel |
                                     haptics::kGateLostClient | haptics::kGateNoDevice |
-                                    haptics::kGateStopped | haptics::kGateBuzz | haptics::kGateKick;
+                                    haptics::kGateStopped | haptics::kGateBuzz |
+                                    haptics::kGateKick | haptics::kGateStalled;
   const std::uint32_t begun = out.gate_actions & ~actions_before;
   return (begun & kFaults) != 0 ||
          (device.condition != before.condition && device::IsFault(device.condition));
@@ -83,10 +84,11 @@ std::int64_t HapticLoop::TickHand(std::size_t i, std::int64_t wake_up_ns) noexce
   device.t_ns = t_ns_;
   device.X_DH = spatial::Rounded(device.X_DH);
   device.V_DH = spatial::Rounded(device.V_DH);
+  const std::int64_t since_write_ns = hand.pace.Begin(NowNs());
   const std::int64_t start_ns = ThreadCpuNs();
-  hand.last = haptics_.Tick(i, device);
+  hand.last = haptics_.Tick(i, device, since_write_ns);
   const std::int64_t compute_ns = ThreadCpuNs() - start_ns;
-  hand.person->Apply(hand.last.F_H_D);
+  hand.person->Apply(hand.pace.Admit(hand.last.F_H_D, NowNs()));
   report_->slowest.Add({t_ns_, i, compute_ns, hand.last.occurrence, hand.last.state,
                         hand.last.points_tested, hand.last.contact_count});
   report_->contact_limits.Add(hand.last);

@@ -6,6 +6,7 @@
 
 #include "device/device.h"
 #include "haptics/tick_output.h"
+#include "haptics/write_pace.h"
 #include "simulation/executors.h"
 #include "simulation/load_shedder.h"
 #include "simulation/operator.h"
@@ -35,6 +36,7 @@ class HapticLoop {
   /** What the loop remembers of one hand from tick to tick. */
   struct Hand {
     Operator* person{nullptr};
+    haptics::WritePace pace;
     haptics::TickOutput last;
     haptics::HoldState state_before{haptics::HoldState::kEmpty};
     device::DeviceState device_before;
@@ -43,6 +45,12 @@ class HapticLoop {
 
   [[nodiscard]] static OperatorInput MakeInput(Hand* hand, std::int64_t t_ns,
                                                std::int64_t period_ns) noexcept;
+
+  /** Time of the clock by which writes are late: the machine's or a steered one; virtual time. */
+  [[nodiscard]] std::int64_t NowNs() const noexcept {
+    return execution_.is_live ? execution_.clock->NowNs() : t_ns_;
+  }
+
   /** Returns its compute time [ns]. */
   std::int64_t TickHand(std::size_t i, std::int64_t wake_up_ns) noexcept;
   void KeepFlight(Hand* hand, FlightTick tick) noexcept;

@@ -175,7 +175,8 @@ void HapticSide::LetGo(Hand* hand, std::int64_t t_ns) noexcept {
   handover_.PushOwnership(event);
 }
 
-haptics::TickOutput HapticSide::Tick(std::size_t hand, const device::DeviceState& device) noexcept {
+haptics::TickOutput HapticSide::Tick(std::size_t hand, const device::DeviceState& device,
+                                     std::int64_t since_write_ns) noexcept {
   TickCommand command;
   while (handover_.commands.TryPop(&command)) {
     if (log_ != nullptr) {
@@ -188,9 +189,10 @@ haptics::TickOutput HapticSide::Tick(std::size_t hand, const device::DeviceState
   context.model_age_ns = device.t_ns - handover_.physics_t_ns.load(std::memory_order_acquire);
   context.is_stopped = is_stopped_.load(std::memory_order_acquire);
   context.effort_level = effort_level_;
+  context.since_write_ns = since_write_ns;
   haptics::TickOutput out = RunTick(&hands_[hand], device, context);
   if (log_ != nullptr) {
-    log_->Add({device, context.model_age_ns, context.is_stopped,
+    log_->Add({device, context.model_age_ns, since_write_ns, context.is_stopped,
                static_cast<std::uint8_t>(effort_level_), static_cast<std::uint8_t>(hand), 0,
                out.F_H_D});
   }
@@ -207,6 +209,7 @@ haptics::TickOutput HapticSide::ReplayTick(const TickLog& log, std::size_t i) no
   context.model_age_ns = tick.model_age_ns;
   context.is_stopped = tick.is_stopped;
   context.effort_level = tick.effort_level;
+  context.since_write_ns = tick.since_write_ns;
   return ReplayTick(tick.hand, tick.device, context);
 }
 

@@ -22,8 +22,10 @@ class HapticSide {
   HapticSide(const Model& model, const std::vector<haptics::TickOptions>& hands,
              Handover* handover);
 
-  /** One tick of one hand: each hand once in a period, in their order. RT-safe. */
-  haptics::TickOutput Tick(std::size_t hand, const device::DeviceState& device) noexcept;
+  /** One tick of one hand: each hand once in a period, in their order. RT-safe.
+   @param since_write_ns  TickContext::since_write_ns; 0 in virtual time. */
+  haptics::TickOutput Tick(std::size_t hand, const device::DeviceState& device,
+                           std::int64_t since_write_ns = 0) noexcept;
 
   /** Sets how much a tick does from the next one on, by the levels of kEffortLevels. RT-safe. */
   void SetEffortLevel(int level) noexcept;

@@ -32,6 +32,7 @@ class TickLog {
   struct Tick {
     device::DeviceState device;
     std::int64_t model_age_ns{0};
+    std::int64_t since_write_ns{0};
     bool is_stopped{false};
     std::uint8_t effort_level{0};
     std::uint8_t hand{0};

@@ -12,6 +12,7 @@
 #include <openssl/rand.h>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 #include "studio/json_fields.h"
 #include "studio/state_folder.h"
 
@@ -68,6 +69,10 @@ const char* ToString(Role role) {
       break;
   }
   return "viewer";
+}
+
+const char* ToString(const Visitor& visitor) {
+  return visitor.is_owner ? "owner" : ToString(visitor.role);
 }
 
 std::optional<Role> ParseRole(std::string_view name) {
@@ -142,6 +147,9 @@ Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, 
   }
   if (kept.port == port && kept.links.size() >= kRoles.size()) {
     known_ = std::move(kept);
+    for (SavedAccess::Browser& browser : known_.browsers) {
+      browser.number = ++last_browser_;
+    }
     return;
   }
   known_.port = port;
@@ -190,18 +198,23 @@ std::string Access::AddLink(Role role) {
   return links.back().token;
 }
 
-SavedAccess::Browser* Access::AddBrowser() {
+SavedAccess::Browser* Access::AddBrowser(Role role) {
   auto& browsers = known_.browsers;
-  if (browsers.size() >= kMaxBrowsers) {
-    // A viewer can be admitted again by the same link.
-    const auto oldest = std::find_if(browsers.begin(), browsers.end(),
-                                     [](const auto& one) { return !IsSingleUse(one.role); });
-    browsers.erase(oldest == browsers.end() ? browsers.begin() : oldest);
-    fmt::print(stderr, "warning: the oldest of {} browsers has to open its link again\n",
-               kMaxBrowsers);
+  const auto is_viewer = [](const SavedAccess::Browser& one) { return one.role == Role::kViewer; };
+  if (role == Role::kViewer) {
+    const auto viewers = std::count_if(browsers.begin(), browsers.end(), is_viewer);
+    if (static_cast<std::size_t>(viewers) >= kMaxViewers) {
+      browsers.erase(std::find_if(browsers.begin(), browsers.end(), is_viewer));
+    }
   }
-  browsers.push_back({MakeToken(), Role::kViewer});
+  browsers.push_back({MakeToken(), role, ++last_browser_});
   return &browsers.back();
+}
+
+Visitor Access::MakeVisitor(const SavedAccess::Browser& browser) const {
+  const SavedAccess::Link& own = known_.links[static_cast<std::size_t>(Role::kOperator)];
+  const bool is_owner = !own.browser.empty() && IsSameSecret(own.browser, browser.secret);
+  return {browser.role, is_owner, browser.number};
 }
 
 Result<Access::Admission> Access::Admit(std::string_view token, std::string_view cookie_header) {
@@ -215,19 +228,20 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
                 "open the link that the program has printed, or ask the user in control for one");
   }
   SavedAccess::Browser* browser = FindBrowser(FindCookie(cookie_header, cookie_name_).value_or(""));
-  const bool is_owner = browser != nullptr && IsSameSecret(link->browser, browser->secret);
-  if (IsSingleUse(link->role) && !link->browser.empty() && !is_owner) {
+  const bool is_its_own = browser != nullptr && IsSameSecret(link->browser, browser->secret);
+  if (IsSingleUse(link->role) && !link->browser.empty() && !is_its_own) {
     return Fail(ErrorCode::kInvalid, "this link has been used by another browser already", "",
                 "ask the user in control for a link of your own (\"Share\"), or start the studio "
                 "again with --new-links");
   }
-  browser = browser != nullptr ? browser : AddBrowser();
+  browser = browser != nullptr ? browser : AddBrowser(link->role);
   browser->role = link->role;
   link->browser = IsSingleUse(link->role) ? browser->secret : "";
   constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s], 30 days: a choice.
-  return Admission{link->role, fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}",
-                                           cookie_name_, browser->secret, kCookieLifetime,
-                                           is_tls_ ? "; Secure" : "")};
+  return Admission{
+      MakeVisitor(*browser),
+      fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", cookie_name_,
+                  browser->secret, kCookieLifetime, is_tls_ ? "; Secure" : "")};
 }
 
 bool Access::EndSharing(std::string_view cookie_header) {
@@ -249,14 +263,15 @@ bool Access::EndSharing(std::string_view cookie_header) {
   return true;
 }
 
-std::optional<Role> Access::RoleOfCookie(std::string_view cookie_header) const {
+std::optional<Visitor> Access::FindVisitor(std::string_view cookie_header) const {
   const std::string secret = FindCookie(cookie_header, cookie_name_).value_or("");
   const std::lock_guard lock(mutex_);
-  std::optional<Role> role;
+  // All entries are compared each time, so that the time does not tell which one matched.
+  std::optional<Visitor> visitor;
   for (const SavedAccess::Browser& browser : known_.browsers) {
-    role = IsSameSecret(secret, browser.secret) ? std::optional(browser.role) : role;
+    visitor = IsSameSecret(secret, browser.secret) ? std::optional(MakeVisitor(browser)) : visitor;
   }
-  return role;
+  return visitor;
 }
 
 std::string Access::token(Role role) const {
@@ -290,7 +305,7 @@ Result<SavedAccess> LoadAccess(const std::filesystem::path& file) {
   if (!text) {
     return Unexpected(text.error());
   }
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = ParseJson<Json>(*text);
   const auto unreadable = [&file] {
     return Fail(ErrorCode::kUnreadable, "the file does not contain the studio's links",
                 file.string(), "delete the file; the studio makes new links");

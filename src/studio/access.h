@@ -31,6 +31,22 @@ inline constexpr std::array kRoles{Role::kOperator, Role::kViewer, Role::kPartic
   return role != Role::kViewer;
 }
 
+/** Who sends a request. The owner is the browser that was admitted by the first operator's link:
+ what it may do is not lost with a lease. */
+struct Visitor {
+  Role role{Role::kViewer};
+  bool is_owner{false};
+  std::uint32_t browser{0};  ///< Number of its session, different for each browser; 0: none.
+
+  /** Number of the link that it came by, whose users share their quotas: all viewers have one link,
+   every other link admits a single browser. */
+  [[nodiscard]] std::uint32_t link() const { return IsSingleUse(role) ? browser : 0; }
+};
+
+/** Name of what a visitor is in the audit log and in docs/access.md: "owner", "operator", "viewer"
+ or "participant". */
+[[nodiscard]] const char* ToString(const Visitor& visitor);
+
 /** Draws 192 random bits, as 32 characters of base64url: a token of a link or a session's
  secret. */
 [[nodiscard]] std::string MakeToken();
@@ -57,6 +73,7 @@ struct SavedAccess {
   struct Browser {
     std::string secret;  ///< Value of its session cookie.
     Role role{Role::kViewer};
+    std::uint32_t number{0};  ///< Visitor::browser; not saved.
   };
 
   std::uint16_t port{0};  ///< Port in the addresses of the links; 0: none.
@@ -77,10 +94,12 @@ struct SavedAccess {
  every browser that has it. Any thread may call it. */
 class Access {
  public:
-  /** Capacities; beyond them the oldest link that is not printed, or the oldest viewer, is
-   removed. */
+  /** Links, those that are printed among them; beyond it the oldest other one is removed. A choice.
+   */
   static constexpr std::size_t kMaxLinks = 64;
-  static constexpr std::size_t kMaxBrowsers = 64;
+  /** Browsers that the viewers' link admits; beyond it the oldest of them is removed, and no
+   browser that has come by another link. A choice. */
+  static constexpr std::size_t kMaxViewers = 32;
 
   /** @param names  Host names and addresses that it answers to besides those of the loopback.
    @param port  Port that the browser connects to.
@@ -99,7 +118,7 @@ class Access {
 
   /** Result of a token that was accepted. */
   struct Admission {
-    Role role{Role::kViewer};
+    Visitor visitor;
     std::string set_cookie;  ///< Set-Cookie header for the admitted browser.
   };
 
@@ -112,8 +131,8 @@ class Access {
    one; nothing is changed otherwise. */
   [[nodiscard]] bool EndSharing(std::string_view cookie_header);
 
-  /** Finds the role of a browser by its Cookie header; none without a valid session. */
-  [[nodiscard]] std::optional<Role> RoleOfCookie(std::string_view cookie_header) const;
+  /** Finds who has sent a Cookie header; none without a valid session. */
+  [[nodiscard]] std::optional<Visitor> FindVisitor(std::string_view cookie_header) const;
 
   /** Name of the session cookie. It contains the port, because browsers share cookies between the
    ports of a host, and two studios may run on one host. */
@@ -133,8 +152,9 @@ class Access {
 
  private:
   [[nodiscard]] SavedAccess::Browser* FindBrowser(std::string_view secret);
+  [[nodiscard]] Visitor MakeVisitor(const SavedAccess::Browser& browser) const;
   std::string AddLink(Role role);
-  SavedAccess::Browser* AddBrowser();
+  SavedAccess::Browser* AddBrowser(Role role);
 
   std::vector<std::string> hosts_;
   std::vector<std::string> origins_;
@@ -142,6 +162,7 @@ class Access {
   std::uint16_t port_;
   bool is_tls_;
   mutable std::mutex mutex_;  ///< Protects what follows.
+  std::uint32_t last_browser_{0};
   SavedAccess known_;  ///< The first links, in the order of kRoles, are those that are printed.
 };
 

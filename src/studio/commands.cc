@@ -19,6 +19,8 @@
 namespace hvas::studio {
 namespace {
 
+constexpr std::int64_t kNsPerS = 1'000'000'000;  // A definition.
+
 /** Empty result of a command that has succeeded. */
 Result<Json> Done(const Result<void>& result) {
   return result ? Result<Json>(Json::object()) : Result<Json>(Unexpected(result.error()));
@@ -71,6 +73,7 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
       Entry<protocol::ResetCommand>(&Hub::DoReset),
       Entry<protocol::RecordCommand>(&Hub::DoRecord),
       Entry<protocol::RenameRecordingCommand>(&Hub::DoRenameRecording),
+      Entry<protocol::ShareRecordingCommand>(&Hub::DoShareRecording),
       Entry<protocol::DeleteRecordingCommand>(&Hub::DoDeleteRecording),
       Entry<protocol::AssignFitCommand>(&Hub::DoEdit<protocol::AssignFitCommand>),
       Entry<protocol::AddMateCommand>(&Hub::DoEdit<protocol::AddMateCommand>),
@@ -88,12 +91,13 @@ const std::map<std::string, Hub::Command, std::less<>>& Hub::Commands() {
   return commands;
 }
 
-Result<Json> Hub::DoOpen(const protocol::OpenCommand& command) {
+Result<Json> Hub::DoOpen(const Caller& caller, const protocol::OpenCommand& command) {
   if (command.example) {
-    const auto found = std::find_if(examples_.begin(), examples_.end(),
-                                    [&](const Example& one) { return one.id == *command.example; });
+    const auto found = std::find_if(examples_.begin(), examples_.end(), [&](const Example& one) {
+      return one.id == *command.example && (caller.visitor.is_owner || !one.is_recent);
+    });
     if (found == examples_.end()) {
-      return Fail(ErrorCode::kNotFound, "there is no such example", *command.example, "");
+      return Fail(ErrorCode::kNotFound, "there is no such example", "example", "");
     }
     workbench_->opener().Open(found->file, found->name);
     return Json::object();
@@ -102,11 +106,11 @@ Result<Json> Hub::DoOpen(const protocol::OpenCommand& command) {
     return Fail(ErrorCode::kInvalid, R"("example" or "upload" must be a text)", "command",
                 "load the page again");
   }
-  const auto found = uploads_.find(*command.upload);
-  if (found == uploads_.end()) {
+  const auto found = uploads_.Find(*command.upload);
+  if (!found) {
     return Fail(ErrorCode::kNotFound, "there is no such upload", "", "send the file again");
   }
-  workbench_->opener().Open(found->second.file, found->second.name);
+  workbench_->opener().Open(found->file, found->name);
   return Json::object();
 }
 
@@ -139,14 +143,14 @@ Result<Json> Hub::DoHandOver(const protocol::HandOverCommand& command) {
 }
 
 Result<Json> Hub::DoAskPart(const Caller& caller, const protocol::AskPartCommand& command) {
-  const std::vector<std::size_t> own = HandsOf(caller.id);
+  const std::vector<std::size_t> own = leases_.HandsOf(caller.id);
   const auto free =
       std::find_if(own.begin(), own.end(), [&](std::size_t hand) { return hand != command.hand; });
   if (free == own.end()) {
     return Fail(ErrorCode::kInvalid, "no hand of this page could take the part", "",
                 "ask for control of a hand first");
   }
-  const auto holder = clients_.find(leases_[command.hand]);
+  const auto holder = clients_.find(leases_.holder(command.hand));
   if (holder == clients_.end() || holder->first == caller.id) {
     return Done(workbench_->hands().HandOver(command.hand, *free));  // Nobody has to agree.
   }
@@ -157,7 +161,7 @@ Result<Json> Hub::DoAskPart(const Caller& caller, const protocol::AskPartCommand
 }
 
 Result<Json> Hub::DoForces(const Caller& caller, const protocol::ForcesCommand& command) {
-  if (!command.off && !caller.has_lease) {
+  if (!command.off && !caller.has_lease && !caller.visitor.is_owner) {
     return Fail(ErrorCode::kInvalid, "only the user in control can switch the forces on", "forces",
                 "ask for control first");
   }
@@ -228,6 +232,13 @@ Result<Json> Hub::DoRenameRecording(const Caller& caller,
   });
 }
 
+Result<Json> Hub::DoShareRecording(const Caller& caller,
+                                   const protocol::ShareRecordingCommand& command) {
+  return DoLater(caller, [recordings = &workbench_->recordings(), command] {
+    return recordings->Share(command.recording, command.shared);
+  });
+}
+
 Result<Json> Hub::DoDeleteRecording(const Caller& caller,
                                     const protocol::DeleteRecordingCommand& command) {
   return DoLater(caller, [recordings = &workbench_->recordings(), command] {
@@ -249,30 +260,27 @@ Result<Json> Hub::DoMeasure(const protocol::MeasureCommand& command) {
 }
 
 Result<Json> Hub::RequestLease(const Caller& caller, const std::vector<std::size_t>& hands) {
-  std::string holder;
-  for (const std::size_t hand : hands) {
-    if (leases_[hand].empty()) {
-      leases_[hand] = caller.id;
-    } else if (leases_[hand] != caller.id) {
-      holder = leases_[hand];
-    }
-  }
+  const auto obstacle = leases_.Request(hands, caller.id, caller.visitor, caller.now_ns);
   BroadcastRoles();
-  if (holder.empty()) {
-    return Json::object();
+  if (!obstacle.holder.empty()) {
+    const Json asks{{"event", "lease_asked"}, {"by", caller.id}, {"hands", hands}};
+    clients_[obstacle.holder].link->SendText(asks.dump());
+    return Json{{"waits_for", obstacle.holder}};
   }
-  const Json asks{{"event", "lease_asked"}, {"by", caller.id}, {"hands", hands}};
-  clients_[holder].link->SendText(asks.dump());
-  return Json{{"waits_for", holder}};
+  if (obstacle.wait_ns > 0) {
+    return Fail(ErrorCode::kInvalid, "the page of who has this hand is gone for a moment", "hand",
+                fmt::format("ask again in {} s", (obstacle.wait_ns + kNsPerS - 1) / kNsPerS));
+  }
+  return Json::object();
 }
 
 Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& command) {
   using protocol::LeaseAction;
   if (command.action == LeaseAction::kRequest) {
-    return RequestLease(
-        caller, command.hand ? std::vector<std::size_t>{*command.hand} : ListHandsInControl());
+    return RequestLease(caller, command.hand ? std::vector<std::size_t>{*command.hand}
+                                             : leases_.ListHandsInControl());
   }
-  std::vector<std::size_t> given = HandsOf(caller.id);
+  std::vector<std::size_t> given = leases_.HandsOf(caller.id);
   if (command.hand) {
     std::erase_if(given, [&](std::size_t hand) { return hand != *command.hand; });
   }
@@ -287,7 +295,7 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
   }
   const std::string to = command.to.value_or("");
   const auto found = clients_.find(to);
-  if (found == clients_.end() || found->second.role != Role::kOperator) {
+  if (found == clients_.end() || found->second.visitor.role != Role::kOperator) {
     return Fail(ErrorCode::kNotFound, "there is no such operator", to, "");
   }
   GiveLease(given, to);
@@ -335,7 +343,7 @@ Result<Json> Hub::DoStudy(const Caller& caller, const protocol::StudyCommand& /*
     return Fail(ErrorCode::kInvalid, "this studio does not run a study", "study",
                 "start the studio with --study and --participant");
   }
-  auto result = desk_->Do(caller.role, caller.command, workbench_->live().clock().NowNs());
+  auto result = desk_->Do(caller.visitor.role, caller.command, workbench_->live().clock().NowNs());
   if (result && TextOr(caller.command, "action", "") != "state") {
     BroadcastStudyState();
   }

@@ -4,11 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -18,54 +17,10 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
-#include <fmt/format.h>
+
+#include "studio/connection_table.h"
 
 namespace hvas::studio {
-
-/** Limits the number of open connections. A connection without a valid session cookie keeps nobody
- out: when the table is full, the oldest of those is closed in favour of a new one. For one
- thread. */
-class ConnectionTable {
- public:
-  static constexpr std::size_t kMost = 64;  ///< Addresses that are remembered: a choice.
-
-  /** @returns the connection's number; 0 when the table is full of authenticated connections. */
-  std::uint64_t Add(boost::beast::tcp_stream* stream) {
-    if (entries_.size() >= kMost && !MakeRoom()) {
-      return 0;
-    }
-    entries_[++last_] = {stream, false};
-    return last_;
-  }
-
-  void MarkAuthenticated(std::uint64_t number) {
-    if (const auto found = entries_.find(number); found != entries_.end()) {
-      found->second.is_authenticated = true;
-    }
-  }
-
-  void Remove(std::uint64_t number) { entries_.erase(number); }
-
- private:
-  struct Entry {
-    boost::beast::tcp_stream* stream{nullptr};
-    bool is_authenticated{false};
-  };
-
-  bool MakeRoom() {
-    for (auto it = entries_.begin(); it != entries_.end(); ++it) {
-      if (!it->second.is_authenticated) {
-        it->second.stream->close();  // pending operations fail, which ends their session
-        entries_.erase(it);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  std::map<std::uint64_t, Entry> entries_;  ///< Key: number, hence in the order of arrival.
-  std::uint64_t last_{0};
-};
 
 /** An Asio stream to one client, with or without TLS. It is one type for both, so that the layers
  above are compiled once. */
@@ -78,11 +33,15 @@ class Connection {
   Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> table)
       : slot_(std::make_unique<Slot>(std::move(socket), std::move(table))) {}
 
-  /** Whether the connection table has accepted it. */
-  [[nodiscard]] bool is_in() const { return slot_->number != 0; }
+  /** Takes a place of its visitor's (ConnectionTable::Enter). */
+  [[nodiscard]] bool Enter(const Visitor& visitor) {
+    return slot_->table->Enter(slot_->number, visitor);
+  }
 
-  /** Marks the client as authenticated: it has sent a valid session cookie. */
-  void MarkAuthenticated() { slot_->table->MarkAuthenticated(slot_->number); }
+  void SetIdle(bool is_idle) { slot_->table->SetIdle(slot_->number, is_idle); }
+
+  /** IP address of the client. */
+  [[nodiscard]] const std::string& address() const { return slot_->address; }
 
   [[nodiscard]] bool is_tls() const { return tls_ != nullptr; }
 
@@ -113,12 +72,10 @@ class Connection {
  private:
   struct Slot {
     Slot(boost::asio::ip::tcp::socket socket, std::shared_ptr<ConnectionTable> given)
-        : stream(std::move(socket)), table(std::move(given)), number(table->Add(&stream)) {
-      if (number == 0) {
-        fmt::print(stderr, "warning: {} browsers are connected; a new connection was closed\n",
-                   ConnectionTable::kMost);
-      }
-    }
+        : stream(std::move(socket)),
+          table(std::move(given)),
+          address(AddressOf(stream.socket())),
+          number(table->Add(address, [this] { stream.close(); })) {}
 
     ~Slot() { table->Remove(number); }
 
@@ -127,8 +84,11 @@ class Connection {
 
     boost::beast::tcp_stream stream;
     std::shared_ptr<ConnectionTable> table;
+    std::string address;
     std::uint64_t number;
   };
+
+  static std::string AddressOf(const boost::asio::ip::tcp::socket& socket);
 
   using Done = std::function<void(boost::beast::error_code, std::size_t)>;
 

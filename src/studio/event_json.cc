@@ -1,5 +1,7 @@
 #include "studio/event_json.h"
 
+#include <algorithm>
+
 #include "base/error_name.h"
 #include "base/units.h"
 
@@ -46,11 +48,29 @@ const char* ToString(simulation::Placement placement) {
   return "loose";
 }
 
+std::string HideFolders(std::string_view text) {
+  constexpr std::string_view kBeforePath = " \t\n\"'`(=:,;<[";  // What a path may follow.
+  constexpr std::string_view kAfterPath = " \t\n\"'`);,>]";     // What ends one, in sentences.
+  std::string shown;
+  for (std::size_t i = 0; i < text.size();) {
+    const bool begins = text[i] == '/' && (i == 0 || kBeforePath.find(text[i - 1]) != text.npos);
+    if (!begins) {
+      shown += text[i++];
+      continue;
+    }
+    const std::size_t end = std::min(text.find_first_of(kAfterPath, i), text.size());
+    const std::string_view path = text.substr(i, end - i);
+    shown += path.substr(path.find_last_of('/', path.size() > 1 ? path.size() - 2 : 0) + 1);
+    i = end;
+  }
+  return shown;
+}
+
 Json ToJson(const Error& error) {
   return {{"code", NameOf(error.code)},
-          {"message", error.message},
-          {"where", error.where},
-          {"remedy", error.remedy}};
+          {"message", HideFolders(error.message)},
+          {"where", HideFolders(error.where)},
+          {"remedy", HideFolders(error.remedy)}};
 }
 
 Json ToJson(const std::vector<product::OccurrenceId>& ids) {

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "base/check.h"
+#include "studio/event_json.h"
 #include "studio/protocol.h"
 
 namespace hvas::studio {
@@ -25,9 +26,9 @@ device::DeviceInfo MakePointerInfo() {
   return info;
 }
 
-Json DescribeDevice(const std::string& address, const device::DeviceInfo& info,
+Json DescribeDevice(std::size_t device, const device::DeviceInfo& info,
                     const haptics::TickOptions* tick) {
-  Json json{{"address", address},
+  Json json{{"index", device},
             {"name", info.profile.name.empty() ? info.model : info.profile.name},
             {"model", info.model},
             {"serial", info.serial},
@@ -40,8 +41,8 @@ Json DescribeDevice(const std::string& address, const device::DeviceInfo& info,
   if (tick != nullptr) {
     json["max_force_n"] = tick->limits ? tick->limits->max_force : tick->device.max_force;
     json["scale"] = tick->workspace.mapping.scale;
-    json["notes"] = address == HandRack::kPointer ? std::vector<std::string>()
-                                                  : simulation::DescribeRendering(info, *tick);
+    json["notes"] = device == DeviceList::kPointer ? std::vector<std::string>()
+                                                   : simulation::DescribeRendering(info, *tick);
   }
   return json;
 }
@@ -61,34 +62,46 @@ std::string DescribeProbe(const device::ProbeReport& report) {
   return found.empty() ? "" : fmt::format("found {}", fmt::join(found, ", "));
 }
 
-Json ListDevices() {
-  const device::Surroundings surroundings;
-  Json list = Json::array();
-  for (const device::Driver* driver : device::Drivers()) {
-    const device::ProbeReport report = driver->Probe(surroundings, false);
+/** Describes a device for the page, and looks whether it is there. */
+Json Probe(std::size_t index, const DeviceList::Entry& entry) {
+  Json json{{"index", index},
+            {"driver", entry.driver},
+            {"name", entry.name},
+            {"detail", "named when the studio was started"},
+            {"is_emulated", entry.is_emulated},
+            {"is_ready", true}};
+  if (entry.is_emulated) {
+    json["detail"] = "not connected: simulated, and held by the pointer or the simulated person";
+  }
+  if (entry.probed != nullptr) {
+    const device::ProbeReport report = entry.probed->Probe(device::Surroundings(), false);
     const bool is_found =
         std::any_of(report.looked_for.begin(), report.looked_for.end(),
                     [](const device::Finding& finding) { return finding.is_found; });
-    list.push_back({{"address", driver->name()},
-                    {"driver", driver->name()},
-                    {"name", driver->title()},
-                    {"detail", DescribeProbe(report)},
-                    {"is_emulated", false},
-                    {"is_ready", is_found && report.problems.empty()}});
+    json["detail"] = HideFolders(DescribeProbe(report));
+    json["is_ready"] = is_found && report.problems.empty();
   }
-  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
-    list.push_back(
-        {{"address", fmt::format("emulated:{}:{}", profile.driver, profile.profile.id)},
-         {"driver", profile.driver},
-         {"name", profile.profile.name},
-         {"detail", "not connected: simulated, and held by the pointer or the simulated person"},
-         {"is_emulated", true},
-         {"is_ready", true}});
-  }
-  return list;
+  return json;
 }
 
 }  // namespace
+
+DeviceList::DeviceList(const std::vector<std::string>& named)
+    : entries_{{"", "", MakePointerInfo().model}} {
+  for (const std::string& address : named) {
+    const std::string driver = address.substr(0, address.find(':'));
+    entries_.push_back(
+        {address, driver, fmt::format("Device {} of the command line", entries_.size()), false});
+  }
+  for (const device::Driver* driver : device::Drivers()) {
+    entries_.push_back({std::string(driver->name()), std::string(driver->name()),
+                        std::string(driver->title()), false, driver});
+  }
+  for (const device::SourcedProfile& profile : device::KnownProfiles()) {
+    entries_.push_back({fmt::format("emulated:{}:{}", profile.driver, profile.profile.id),
+                        profile.driver, profile.profile.name, true});
+  }
+}
 
 std::size_t HandRack::count() const {
   const std::lock_guard lock(mutex_);
@@ -106,28 +119,28 @@ void HandRack::SetCount(std::size_t count) {
   slots_.resize(count);
 }
 
-Result<void> HandRack::Use(std::size_t hand, const std::string& address, double scale,
-                           bool is_live) {
+Result<void> HandRack::Use(std::size_t hand, std::size_t device, double scale, bool is_live) {
+  const DeviceList::Entry& entry = list_->entries()[device];
   Slot slot;
-  slot.address = address;
+  slot.device = device;
   {
     const std::lock_guard lock(mutex_);
     if (hand >= slots_.size()) {
       return Fail(ErrorCode::kInvalid, "there is no such hand", fmt::format("hand {}", hand),
                   "add a hand first");
     }
-    for (std::size_t i = 0; i < slots_.size() && address != kPointer; ++i) {
-      if (slots_[i].address == address && i != hand) {
-        return Fail(ErrorCode::kInvalid, "another hand uses this device", address,
+    for (std::size_t i = 0; i < slots_.size() && device != DeviceList::kPointer; ++i) {
+      if (slots_[i].device == device && i != hand) {
+        return Fail(ErrorCode::kInvalid, "another hand uses this device", entry.name,
                     "choose another device for that hand first");
       }
     }
-    if (slots_[hand].address == address) {
+    if (slots_[hand].device == device) {
       slot = slots_[hand];
     }
   }
-  if (address != kPointer && slot.setup.device == nullptr) {
-    auto opened = device::OpenAnyDevice(address, is_live);
+  if (device != DeviceList::kPointer && slot.setup.device == nullptr) {
+    auto opened = device::OpenAnyDevice(entry.address, is_live);
     if (!opened) {
       return Unexpected(opened.error());
     }
@@ -170,7 +183,7 @@ Json HandRack::Describe(const std::vector<const haptics::TickOptions*>& hands) c
     const device::DeviceInfo info =
         slot.setup.device != nullptr ? slot.setup.device->device->info() : MakePointerInfo();
     list.push_back({{"hand", i},
-                    {"device", DescribeDevice(slot.address, info, tick)},
+                    {"device", DescribeDevice(slot.device, info, tick)},
                     {"condition", device::ToString(slot.condition)}});
   }
   return list;
@@ -182,7 +195,12 @@ bool DeviceSearch::Begin() {
 }
 
 void DeviceSearch::Run() {
-  Json found = ListDevices();
+  Json found = Json::array();
+  for (std::size_t i = 0; i < list_->entries().size(); ++i) {
+    if (i != DeviceList::kPointer) {
+      found.push_back(Probe(i, list_->entries()[i]));
+    }
+  }
   const std::lock_guard lock(mutex_);
   found_ = std::move(found);
   is_searching_ = false;

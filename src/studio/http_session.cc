@@ -17,6 +17,9 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
+#include "base/clock.h"
+#include "base/error_name.h"
+#include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "studio/answer_lanes.h"
 #include "studio/event_json.h"
@@ -60,9 +63,6 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       : connection_(std::move(socket), shared->connections), shared_(std::move(shared)) {}
 
   void Run() {
-    if (!connection_.is_in()) {
-      return;
-    }
     error_code ignored;
     wire().socket().set_option(tcp::no_delay(true), ignored);
     if (shared_->tls == nullptr) {
@@ -105,6 +105,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void ReadHeader() {
+    connection_.SetIdle(true);
     header_.emplace();
     header_->header_limit(kMaxHeader);
     header_->body_limit(
@@ -125,6 +126,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Route() {
     const auto& request = header_->get();
     is_last_ = !request.keep_alive();
+    connection_.SetIdle(false);
+    visitor_.reset();
     const std::string_view origin = FieldOf(request, http::field::origin);
     const Access& access = *shared_->access;
     if (!access.AllowsHost(FieldOf(request, http::field::host))) {
@@ -142,6 +145,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kInvalid, "a page of another origin may not access this server",
                      "Origin", "open the address that the program printed"});
     }
+    visitor_ = access.FindVisitor(FieldOf(request, http::field::cookie));
+    if (visitor_ && !connection_.Enter(*visitor_)) {
+      return Refuse(http::status::too_many_requests,
+                    {ErrorCode::kOutOfResource, "too many connections by this link are busy", "",
+                     "wait until others are served, or close another page"});
+    }
     const std::string_view target = ToView(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
     if (request.method() == http::verb::post && path == "/api/session") {
@@ -151,14 +160,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       const auto accepted = FieldOf(request, http::field::accept_encoding);
       return Reply(MakeAssetResponse(path, accepted));
     }
-    const auto role = access.RoleOfCookie(FieldOf(request, http::field::cookie));
-    if (!role) {
+    if (!visitor_) {
       return Refuse(http::status::unauthorized,
                     {ErrorCode::kInvalid, "this browser has no session", "",
                      "open the link that the program printed, including its token"});
     }
-    connection_.MarkAuthenticated();
-    RouteKnown(*role, path, is_upgrade);
+    RouteKnown(*visitor_, path, is_upgrade);
   }
 
   /** Redirects to the page by https; the browser keeps the token in the fragment. @pre the host is
@@ -173,21 +180,21 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     Send(std::move(response));
   }
 
-  void RouteKnown(Role role, std::string_view path, bool is_upgrade) {
+  void RouteKnown(const Visitor& visitor, std::string_view path, bool is_upgrade) {
     const http::verb method = header_->get().method();
     if (path == "/ws" && is_upgrade) {
       wire().expires_never();
-      StartSocketSession(std::move(connection_), shared_, role, header_->get());
+      StartSocketSession(std::move(connection_), shared_, visitor, header_->get());
     } else if (method == http::verb::get) {
-      ReplyLater(role, DecodePercent(path));
+      ReplyLater(visitor, DecodePercent(path));
     } else if (path == "/api/upload" && method == http::verb::post) {
-      ReadUpload(role);
+      ReadUpload(visitor);
     } else if (path == "/api/end_sharing" && method == http::verb::post) {
       ReadJson(&HttpSession::EndSharing);
     } else if (path == "/api/link" && method == http::verb::post) {
-      if (role != Role::kOperator) {
+      if (visitor.role != Role::kOperator) {
         Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
-                                         "ask the user in control for a link"});
+                                         "ask the user who started this studio for a link"});
       } else {
         ReadJson(&HttpSession::MakeLink);
       }
@@ -198,19 +205,20 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   /** Makes the response on another thread, and sends it when it is there. */
-  void ReplyLater(Role role, std::string path) {
+  void ReplyLater(const Visitor& visitor, std::string path) {
     const bool is_of_records = path.starts_with("/api/recording");
     const std::string accepted(FieldOf(header_->get(), http::field::accept_encoding));
     // The session is used and freed by the network thread alone: the job only carries it.
-    auto job = [self = shared_from_this(), path, accepted, bench = shared_->workbench,
-                is_shielded = shared_->hub.IsShielded(role)](const std::stop_token& stop) mutable {
-      auto made = TryMakeResponse(bench, path, is_shielded, accepted, stop);
+    auto job = [self = shared_from_this(), path, accepted, visitor, bench = shared_->workbench,
+                is_shielded =
+                    shared_->hub.IsShielded(visitor.role)](const std::stop_token& stop) mutable {
+      auto made = TryMakeResponse(bench, path, visitor, is_shielded, accepted, stop);
       const auto executor = self->connection_.get_executor();
       asio::post(executor, [self = std::move(self), made = std::move(made)]() mutable {
         self->Reply(std::move(made));
       });
     };
-    if (!shared_->lanes->TryPost(AnswerLanes::Find(role, is_of_records), std::move(job))) {
+    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor.role, is_of_records), std::move(job))) {
       Refuse(http::status::service_unavailable,
              {ErrorCode::kOutOfResource, "too many requests wait for an answer", std::move(path),
               "try again in a few seconds"});
@@ -218,10 +226,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   static Result<Response> TryMakeResponse(Workbench* bench, const std::string& path,
-                                          bool is_shielded, const std::string& accepted,
+                                          const Visitor& visitor, bool is_shielded,
+                                          const std::string& accepted,
                                           const std::stop_token& stop) {
     try {
-      auto made = MakeApiResponse(bench, path, is_shielded, accepted, stop);
+      auto made = MakeApiResponse(bench, path, visitor, is_shielded, accepted, stop);
       if (made && made->file) {
         auto opened = RegularFile::Open(*made->file);
         if (!opened) {
@@ -260,8 +269,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                          self->RefuseBody(error);
                        } else {
                          self->cookie_ = FieldOf(parser->get(), http::field::cookie);
-                         (*self.*handler)(Json::parse(parser->get().body(), nullptr,
-                                                      /*allow_exceptions=*/false));
+                         (*self.*handler)(ParseJson<Json>(parser->get().body()));
                        }
                      });
   }
@@ -272,13 +280,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return Refuse(http::status::unauthorized, admission.error());
     }
     shared_->SaveAccessState();
-    if (admission->role == Role::kParticipant) {
+    Note({{"request", "come_in"}, {"as", ToString(admission->visitor)}});
+    if (admission->visitor.role == Role::kParticipant) {
       shared_->UpdateParticipantLink();
     }
     http::response<http::string_body> response(http::status::ok, 11);
     response.set(http::field::set_cookie, admission->set_cookie);
     response.set(http::field::content_type, "application/json");
-    response.body() = Json{{"role", ToString(admission->role)}}.dump();
+    response.body() = Json{{"role", ToString(admission->visitor.role)}}.dump();
     Send(std::move(response));
   }
 
@@ -290,6 +299,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     {ErrorCode::kInvalid, "there is no such role", "role",
                      "request a link for an operator or a viewer"});
     }
+    if (IsSingleUse(*role) && !visitor_->is_owner) {
+      return Refuse(http::status::forbidden,
+                    {ErrorCode::kInvalid,
+                     "only the user who started this studio can invite others to work here", "role",
+                     "ask that user for a link, or pass on a link for viewers"});
+    }
     const Access& access = *shared_->access;
     const ServerOptions& options = shared_->options;
     Json origins = Json::array();
@@ -299,6 +314,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     const std::string token = shared_->access->MakeInvitation(*role);
     shared_->SaveAccessState();
+    Note({{"request", "make_link"}, {"for", ToString(*role)}});
     SendJson(http::status::ok, {{"token", token},
                                 {"role", ToString(*role)},
                                 {"is_for_one", IsSingleUse(*role)},
@@ -316,22 +332,27 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
            "ask that user, or close this page to leave"});
     }
     shared_->SaveAccessState();
+    Note({{"request", "end_sharing"}});
     shared_->UpdateParticipantLink();
     shared_->hub.CloseRevoked();
     SendJson(http::status::ok, Json::object());
   }
 
-  void ReadUpload(Role role) {
-    if (role != Role::kOperator) {
+  void ReadUpload(const Visitor& visitor) {
+    if (visitor.role != Role::kOperator) {
       return Refuse(http::status::forbidden, {ErrorCode::kInvalid, "this link is for viewers", "",
                                               "ask for an operator's link"});
     }
     if (!IsShort(shared_->options.max_upload)) {
       return;
     }
-    std::string name = NameOfUpload(ToView(header_->get().target()));
-    auto upload = std::make_shared<Upload>(
-        std::move(*header_), shared_->options.upload_folder / MakeToken(), std::move(name));
+    const std::uint32_t link = visitor.link();
+    const std::string name = NameOfUpload(ToView(header_->get().target()));
+    const auto folder = shared_->hub.uploads().Begin(shared_->options.upload_folder, link);
+    if (!folder) {
+      return Refuse(http::status::too_many_requests, folder.error());
+    }
+    auto upload = std::make_shared<Upload>(std::move(*header_), link, *folder / name);
     upload->parser.body_limit(shared_->options.max_upload);
     wire().expires_after(kUploadTime);
     SaveUpload(std::move(upload), true);
@@ -339,9 +360,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   /** A body on its way into a file. */
   struct Upload {
-    Upload(Header&& header, std::filesystem::path folder, std::string name)
-        : file(std::move(folder), std::move(name)), parser(std::move(header)) {}
+    Upload(Header&& header, std::uint32_t of, std::filesystem::path path)
+        : link(of), file(std::move(path)), parser(std::move(header)) {}
 
+    std::uint32_t link;
     UploadFile file;
     http::request_parser<http::buffer_body> parser;
     std::vector<std::byte> piece = std::vector<std::byte>(64 << 10);  // [bytes]: a choice.
@@ -363,6 +385,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
             if (saved) {
               self->ReadUploadPiece(std::move(upload));
             } else {
+              self->shared_->hub.uploads().GiveUp(upload->link);
               self->Refuse(http::status::insufficient_storage, saved.error());
             }
           });
@@ -371,9 +394,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void ReadUploadPiece(std::shared_ptr<Upload> upload) {
     if (upload->parser.is_done()) {
-      const std::string name = upload->file.name();
-      return SendJson(http::status::ok,
-                      {{"upload", shared_->hub.AddUpload(upload->file.Keep(), name)}});
+      upload->file.Close();
+      return FinishUpload(upload->link, upload->file.path(),
+                          upload->file.path().filename().string());
     }
     auto& body = upload->parser.get().body();
     body.data = upload->piece.data();
@@ -383,12 +406,29 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                      [self = shared_from_this(), upload = std::move(upload)](error_code error,
                                                                              std::size_t) mutable {
                        if (error && error != http::error::need_buffer) {
+                         self->shared_->hub.uploads().GiveUp(upload->link);
                          return self->RefuseBody(error);
                        }
                        upload->received = upload->piece.size() - upload->parser.get().body().size;
                        self->SaveUpload(std::move(upload), false);
                      });
   }
+
+  void FinishUpload(std::uint32_t link, const std::filesystem::path& file,
+                    const std::string& name) {
+    const SceneOpener& opener = shared_->workbench->opener();
+    const std::string id = shared_->hub.uploads().Finish(
+        link, {file, name},
+        [&opener](const std::filesystem::path& other) { return opener.IsInUse(other); });
+    Note({{"request", "upload"}, {"name", name}});
+    SendJson(http::status::ok, {{"upload", id}});
+  }
+
+  [[nodiscard]] AuditLog::Entry MakeEntry(Json did) const {
+    return {visitor_ ? ToString(*visitor_) : "stranger", connection_.address(), "", std::move(did)};
+  }
+
+  void Note(Json did) { shared_->audit->Note(MakeEntry(std::move(did))); }
 
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
@@ -504,6 +544,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** Says why not, and ends the connection: what may follow in it is not read. */
   void Refuse(http::status status, const Error& error) {
     is_refused_ = true;
+    shared_->audit->NoteRefusal(
+        visitor_ ? visitor_->link() : AuditLog::kStranger,
+        MakeEntry({{"request", "http"}, {"status", static_cast<int>(status)}}), NameOf(error.code),
+        MonotonicNs());
     SendJson(status, {{"error", ToJson(error)}});
   }
 
@@ -550,6 +594,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   /** Reads and discards the rest of the request for a while: closing with unread data would reset
    the connection, and the client could lose the response. */
   void End() {
+    connection_.SetIdle(true);  // Nothing is lost where its place is needed.
     wire().expires_after(kLinger);
     if (!connection_.is_tls()) {
       error_code ignored;
@@ -573,7 +618,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer buffer_{kMaxHeader + (64 << 10)};
   std::optional<Header> header_;
   std::shared_ptr<const void> owner_;
-  std::string cookie_;  ///< Of the request whose body was read.
+  std::string cookie_;              ///< Of the request whose body was read.
+  std::optional<Visitor> visitor_;  ///< Who has sent the request; none: a stranger.
   bool is_refused_{false};
   bool is_last_{false};  ///< The client asked for the end of the connection after this answer.
 };

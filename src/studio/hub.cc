@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error_name.h"
 #include "studio/event_json.h"
 #include "studio/frames.h"
 #include "studio/json_fields.h"
@@ -35,68 +36,90 @@ std::string Print(const Json& json) {
 
 }  // namespace
 
-Hub::Hub(Workbench* workbench, std::vector<Example> examples)
-    : workbench_(workbench), examples_(std::move(examples)), status_({{"event", "status"}}) {}
+Hub::Hub(Workbench* workbench, std::vector<Example> examples, AuditLog* audit)
+    : workbench_(workbench),
+      examples_(std::move(examples)),
+      audit_(audit),
+      status_({{"event", "status"}}) {}
 
-Result<std::string> Hub::Join(Role role, ClientLink* link) {
-  if (clients_.size() >= kMaxClients) {
-    return Fail(ErrorCode::kOutOfResource,
-                fmt::format("{} clients are connected already, the maximum", kMaxClients), "",
-                "close another window of the studio");
+Result<void> Hub::CheckRoom(const Visitor& visitor) const {
+  std::size_t of_link = 0;
+  std::size_t of_others = 0;  // Than the owner.
+  for (const auto& [id, client] : clients_) {
+    of_others += client.visitor.is_owner ? 0 : 1;
+    of_link += !client.visitor.is_owner && client.visitor.link() == visitor.link() ? 1 : 0;
+  }
+  const std::size_t most_of_link =
+      visitor.role == Role::kViewer ? kMaxViewingClients : kMaxClientsOfLink;
+  const bool has_room = visitor.is_owner
+                            ? clients_.size() < kMaxClients
+                            : of_link < most_of_link && of_others < kMaxClients - kKeptForOwner;
+  return has_room ? Result<void>()
+                  : Fail(ErrorCode::kOutOfResource,
+                         "as many pages are open as this link, or this studio, admits", "",
+                         "close another page of the studio");
+}
+
+Result<std::string> Hub::Join(const Visitor& visitor, ClientLink* link, std::int64_t now_ns) {
+  if (auto room = CheckRoom(visitor); !room) {
+    return Unexpected(room.error());
   }
   const std::string id = fmt::format("c{}", ++last_id_);
   Client& client = clients_[id];
-  client.role = role;
+  client.visitor = visitor;
   client.link = link;
-  for (std::string& lease : leases_) {
-    if (role == Role::kOperator && lease.empty() && desk_ == nullptr) {
-      lease = id;
-    }
-  }
-  if (role == Role::kParticipant) {
-    leases_[0] = id;
+  if (visitor.role == Role::kOperator) {
+    leases_.Return(id, visitor, /*takes_free=*/desk_ == nullptr, now_ns);
+  } else if (visitor.role == Role::kParticipant) {
+    leases_.Give({0}, id);
   }
   link->SendText(MakeHello(id, client).dump());
   for (const Json& event : workbench_->MakeCatchUpEvents()) {
     SendTo(client, event, event.dump());
   }
   if (desk_ != nullptr) {
-    link->SendText(Print(desk_->MakeEvent(role, workbench_->live().clock().NowNs())));
+    link->SendText(Print(desk_->MakeEvent(visitor.role, workbench_->live().clock().NowNs())));
   }
   BroadcastRoles();
   return id;
 }
 
-void Hub::Leave(const std::string& id) {
-  clients_.erase(id);
+void Hub::Leave(const std::string& id, std::int64_t now_ns) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) {
+    return;
+  }
   // A hand without input stays where it is: PointerOperator times out.
-  GiveLease(HandsOf(id), "");
+  leases_.Lose(id, found->second.visitor, now_ns);
+  clients_.erase(found);
+  BroadcastRoles();
 }
 
 Json Hub::MakeHello(const std::string& id, const Client& client) const {
   Json examples = Json::array();
   for (const Example& example : desk_ == nullptr ? examples_ : std::vector<Example>()) {
-    // Where the user's own files lie is nobody else's business.
-    if (client.role == Role::kOperator || !example.is_recent) {
+    // Where the owner's own files lie is nobody else's business.
+    if (client.visitor.is_owner || !example.is_recent) {
       examples.push_back({{"id", example.id},
                           {"name", example.name},
                           {"about", example.about},
                           {"is_recent", example.is_recent}});
     }
   }
-  return {
-      {"event", "hello"},
-      {"version", protocol::kVersion},
-      {"role", ToString(client.role)},
-      {"client", id},
-      {"has_lease", leases_[0] == id},
-      {"hands", MakeHands()},
-      {"has_study", desk_ != nullptr},
-      {"recording", IsShielded(client.role) ? Json(nullptr) : workbench_->recordings().Describe()},
-      {"examples", std::move(examples)},
-      {"forces_off", workbench_->live().forces_off()},
-      {"has_scene", workbench_->live().scene() != nullptr},
-      {"demo", workbench_->live().is_demo()}};
+  return {{"event", "hello"},
+          {"version", protocol::kVersion},
+          {"role", ToString(client.visitor.role)},
+          {"is_owner", client.visitor.is_owner},
+          {"client", id},
+          {"has_lease", leases_.holder(0) == id},
+          {"hands", MakeHands()},
+          {"has_study", desk_ != nullptr},
+          {"recording",
+           IsShielded(client.visitor.role) ? Json(nullptr) : workbench_->recordings().Describe()},
+          {"examples", std::move(examples)},
+          {"forces_off", workbench_->live().forces_off()},
+          {"has_scene", workbench_->live().scene() != nullptr},
+          {"demo", workbench_->live().is_demo()}};
 }
 
 void Hub::Broadcast(Json event) {
@@ -123,7 +146,7 @@ void Hub::Broadcast(Json event) {
 }
 
 void Hub::SendTo(const Client& client, const Json& event, const std::string& text) {
-  if (!IsShielded(client.role)) {
+  if (!IsShielded(client.visitor.role)) {
     client.link->SendText(text);
     return;
   }
@@ -145,7 +168,7 @@ void Hub::SendTo(const Client& client, const Json& event, const std::string& tex
 void Hub::BroadcastStudyState() {
   const std::int64_t now_ns = workbench_->live().clock().NowNs();
   for (auto& [id, client] : clients_) {
-    client.link->SendText(Print(desk_->MakeEvent(client.role, now_ns)));
+    client.link->SendText(Print(desk_->MakeEvent(client.visitor.role, now_ns)));
   }
 }
 
@@ -160,7 +183,7 @@ Result<void> Hub::CheckStudy(const Caller& caller, const std::string& name) cons
   const auto has = [&](const auto& names) {
     return std::any_of(names.begin(), names.end(), [&](const char* one) { return name == one; });
   };
-  if (!(IsShielded(caller.role) ? has(kShielded) : has(kExperimenters))) {
+  if (!(IsShielded(caller.visitor.role) ? has(kShielded) : has(kExperimenters))) {
     return Fail(ErrorCode::kInvalid, "the command is not available during a study", name,
                 "end the study first");
   }
@@ -172,9 +195,9 @@ Json Hub::MakeRoles() const {
   for (const auto& [id, client] : clients_) {
     clients.push_back({{"id", id},
                        {"name", client.name},
-                       {"role", ToString(client.role)},
-                       {"has_lease", leases_[0] == id},
-                       {"hands", HandsOf(id)}});
+                       {"role", ToString(client.visitor.role)},
+                       {"has_lease", leases_.holder(0) == id},
+                       {"hands", leases_.HandsOf(id)}});
   }
   return {{"event", "roles"}, {"clients", std::move(clients)}};
 }
@@ -187,36 +210,14 @@ void Hub::BroadcastRoles() {
 Json Hub::MakeHands() const {
   Json hands = workbench_->hands().Describe();
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    hands[i]["lease"] = leases_[i].empty() ? Json(nullptr) : Json(leases_[i]);
+    hands[i]["lease"] = leases_.holder(i).empty() ? Json(nullptr) : Json(leases_.holder(i));
   }
   return hands;
 }
 
 void Hub::GiveLease(const std::vector<std::size_t>& hands, const std::string& id) {
-  for (const std::size_t hand : hands) {
-    leases_[hand] = id;
-  }
+  leases_.Give(hands, id);
   BroadcastRoles();
-}
-
-std::vector<std::size_t> Hub::HandsOf(const std::string& id) const {
-  std::vector<std::size_t> hands;
-  for (std::size_t hand = 0; hand < leases_.size(); ++hand) {
-    if (leases_[hand] == id) {
-      hands.push_back(hand);
-    }
-  }
-  return hands;
-}
-
-std::vector<std::size_t> Hub::ListHandsInControl() const {
-  std::vector<std::size_t> hands;
-  for (std::size_t hand = 0; hand < leases_.size(); ++hand) {
-    if (leases_[hand].empty() || leases_[hand] == leases_[0]) {
-      hands.push_back(hand);
-    }
-  }
-  return hands;
 }
 
 void Hub::CloseRevoked() {
@@ -253,8 +254,9 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "",
                   "send fewer commands for each second");
   } else if (command) {
-    result = Execute(id, *command);
+    result = Execute(id, *command, now_ns);
   }
+  NoteCommand(id, found->second, command.value_or(Json::object()), result, now_ns);
   SendReply(link, command, result);
 }
 
@@ -264,7 +266,7 @@ void Hub::SendReply(ClientLink* link, const Result<Json>& command, const Result<
   }
 }
 
-bool Hub::TrySwitchForcesOff(const std::string& id, std::string_view text) {
+bool Hub::TrySwitchForcesOff(const std::string& id, std::string_view text, std::int64_t now_ns) {
   constexpr std::size_t kLongest = 1000;  // [bytes] of such a command: a choice.
   if (text.size() > kLongest || text.find("forces") == std::string_view::npos) {
     return false;
@@ -276,7 +278,9 @@ bool Hub::TrySwitchForcesOff(const std::string& id, std::string_view text) {
   workbench_->live().SetForcesOff(true);
   if (const auto found = clients_.find(id); found != clients_.end()) {
     ClientLink* const link = found->second.link;
-    SendReply(link, command, Execute(id, *command));
+    const Result<Json> result = Execute(id, *command, now_ns);
+    NoteCommand(id, found->second, *command, result, now_ns);
+    SendReply(link, command, result);
   }
   return true;
 }
@@ -294,7 +298,7 @@ bool Hub::TryRefuseForcesOn(const std::string& id, std::string_view text) {
   return true;
 }
 
-Result<Json> Hub::Execute(const std::string& id, const Json& command) {
+Result<Json> Hub::Execute(const std::string& id, const Json& command, std::int64_t now_ns) {
   const auto name = TextAt(command, "command");
   if (!name) {
     return Unexpected(name.error());
@@ -303,16 +307,23 @@ Result<Json> Hub::Execute(const std::string& id, const Json& command) {
   if (found == Commands().end()) {
     return Fail(ErrorCode::kNotFound, "there is no such command", *name, "reload the page");
   }
-  const Caller caller{id, clients_[id].role, leases_[0] == id, command};
+  const Caller caller{id, clients_[id].visitor, leases_.holder(0) == id, command, now_ns};
   if (const auto checked = CheckStudy(caller, *name); !checked) {
     return Unexpected(checked.error());
   }
   if (!MayDo(found->second.right, caller)) {
-    return Fail(
-        ErrorCode::kInvalid, "only the user in control can do this", *name,
-        caller.role == Role::kOperator ? "ask for control first" : "this link is for viewers");
+    return Fail(ErrorCode::kInvalid, "only the user in control can do this", *name,
+                ExplainRight(found->second.right, caller));
   }
   return found->second.handler(this, caller, command);
+}
+
+std::string Hub::ExplainRight(protocol::Right right, const Caller& caller) {
+  if (caller.visitor.role != Role::kOperator) {
+    return "this link is for viewers";
+  }
+  return right == protocol::Right::kOwner ? "ask the user who started this studio"
+                                          : "ask for control first";
 }
 
 bool Hub::MayDo(protocol::Right right, const Caller& caller) const {
@@ -321,13 +332,34 @@ bool Hub::MayDo(protocol::Right right, const Caller& caller) const {
     case Right::kAnybody:
       return true;
     case Right::kOperator:
-      return caller.role == Role::kOperator;
+      return caller.visitor.role == Role::kOperator;
+    case Right::kOwner:
+      return caller.visitor.is_owner;
     case Right::kLease:
       return caller.has_lease;
     case Right::kHand:
-      return leases_[HandAt(caller.command, "hand").value_or(0)] == caller.id;
+      return leases_.holder(HandAt(caller.command, "hand").value_or(0)) == caller.id;
   }
   return false;
+}
+
+void Hub::NoteCommand(const std::string& id, const Client& client, const Json& command,
+                      const Result<Json>& result, std::int64_t now_ns) {
+  const auto found = Commands().find(TextOr(command, "command", ""));
+  const bool is_known = found != Commands().end();
+  // What everybody may do changes nothing, but for the forces.
+  const bool is_of_interest =
+      !is_known || found->second.right != protocol::Right::kAnybody || found->first == "forces";
+  if (audit_ == nullptr || (result && !is_of_interest)) {
+    return;
+  }
+  const AuditLog::Entry entry{ToString(client.visitor), client.link->address(), id,
+                              DescribeForAudit(command)};
+  if (result) {
+    audit_->Note(entry);
+  } else {
+    audit_->NoteRefusal(client.visitor.link(), entry, NameOf(result.error().code), now_ns);
+  }
 }
 
 void Hub::OnBinary(const std::string& id, std::string_view bytes) {
@@ -347,7 +379,7 @@ void Hub::OnBinary(const std::string& id, std::string_view bytes) {
   constexpr std::uint32_t kGrip = 1;  // Bit 0 (docs/protocol.md).
   const bool may_grip = desk_ == nullptr || desk_->CheckTake().has_value();
   for (const protocol::HandInput& input : frames->inputs) {
-    if (input.hand < leases_.size() && leases_[input.hand] == id) {
+    if (input.hand < HandLeases::size() && leases_.holder(input.hand) == id) {
       workbench_->hands().Move(input.hand, PoseOf(input), may_grip && (input.buttons & kGrip) != 0);
     }
   }
@@ -372,7 +404,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
     client->epoch = frame.epoch;
     client->shown = {};
   }
-  std::string bytes = MakeFrames(IsShielded(client->role) ? RemoveTrueForces(frame) : frame,
+  std::string bytes = MakeFrames(IsShielded(client->visitor.role) ? RemoveTrueForces(frame) : frame,
                                  frame.clock_ns, client->sent_seq + 1, &client->shown);
   if (bytes.empty()) {
     return;
@@ -381,7 +413,10 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
   client->link->SendFrames(std::move(bytes));
 }
 
-void Hub::PublishStatus() {
+void Hub::PublishStatus(std::int64_t now_ns) {
+  if (leases_.EndWaits(now_ns)) {
+    BroadcastRoles();
+  }
   if (desk_ != nullptr && desk_->Poll(workbench_->live().clock().NowNs())) {
     BroadcastStudyState();
   }
@@ -401,12 +436,6 @@ void Hub::PublishStatus() {
   if (status_.contains("tick_hz")) {  // there is no loop before a file is open
     Broadcast(status_);
   }
-}
-
-std::string Hub::AddUpload(const std::filesystem::path& file, const std::string& name) {
-  std::string id = MakeToken();
-  uploads_[id] = {file, name};
-  return id;
 }
 
 }  // namespace hvas::studio

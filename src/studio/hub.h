@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -12,9 +11,12 @@
 #include <vector>
 
 #include "studio/access.h"
+#include "studio/audit_log.h"
 #include "studio/commands.h"
 #include "studio/frame_codec.h"
+#include "studio/hand_leases.h"
 #include "studio/study_desk.h"
+#include "studio/upload_shelf.h"
 #include "studio/workbench.h"
 
 namespace hvas::studio {
@@ -32,6 +34,9 @@ class ClientLink {
 
   /** Whether the client's browser may still come in; a link may have been revoked. */
   [[nodiscard]] virtual bool is_admitted() const { return true; }
+
+  /** IP address of the client; empty: none. */
+  [[nodiscard]] virtual std::string address() const { return {}; }
 };
 
 /** A product that the start page offers. */
@@ -45,7 +50,11 @@ struct Example {
  the events and frames that they get. All functions are for one thread. */
 class Hub {
  public:
-  static constexpr std::size_t kMaxClients = 16;  ///< Pages that see one scene: a choice.
+  // Pages that see one scene, which share the network and the time of one thread: choices.
+  static constexpr std::size_t kMaxClients = 24;
+  static constexpr std::size_t kKeptForOwner = 4;      ///< Places among these that nobody else has.
+  static constexpr std::size_t kMaxClientsOfLink = 4;  ///< Users of one link.
+  static constexpr std::size_t kMaxViewingClients = 12;  ///< All that came by the viewers' link.
   /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second.
    */
   static constexpr std::size_t kMaxUnseen = 8;
@@ -53,7 +62,8 @@ class Hub {
   static constexpr double kCommandsPerSecond = 50;
   static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.
 
-  Hub(Workbench* workbench, std::vector<Example> examples);
+  /** @param audit  Outlives this; null: nothing is noted. */
+  Hub(Workbench* workbench, std::vector<Example> examples, AuditLog* audit = nullptr);
 
   /** Runs a study: clients other than the experimenter then see no more than a participant may.
    @param desk  Outlives this. @pre no client has joined. */
@@ -64,9 +74,12 @@ class Hub {
     return desk_ != nullptr && role != Role::kOperator;
   }
 
-  /** Adds a client. @returns its id. Errors: kOutOfResource when there are kMaxClients. */
-  [[nodiscard]] Result<std::string> Join(Role role, ClientLink* link);
-  void Leave(const std::string& id);
+  /** Adds a client. @param now_ns  MonotonicNs(), here and in the other functions. @returns its id.
+   Errors: kOutOfResource when those who came by its link, or all but the owner, have their number.
+ */
+  [[nodiscard]] Result<std::string> Join(const Visitor& visitor, ClientLink* link,
+                                         std::int64_t now_ns);
+  void Leave(const std::string& id, std::int64_t now_ns);
 
   /** Closes the connections of clients whose browsers may not come in any more. */
   void CloseRevoked();
@@ -78,13 +91,13 @@ class Hub {
    anything else that waits: it sets what the haptic thread reads before it looks at who the client
    is, or at how many commands it has sent. Any client may do this. @returns false for any other
    message, which is left to OnText(). */
-  bool TrySwitchForcesOff(const std::string& id, std::string_view text);
+  bool TrySwitchForcesOff(const std::string& id, std::string_view text, std::int64_t now_ns);
 
   /** Refuses a command that would switch the forces on, which was sent before they were switched
    off and is executed only now. @returns false for any other message. */
   bool TryRefuseForcesOn(const std::string& id, std::string_view text);
 
-  /** Executes a command and replies to it. @param now_ns  MonotonicNs(). */
+  /** Executes a command and replies to it. */
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
 
@@ -95,17 +108,17 @@ class Hub {
   /** Sends the newest frame to all clients that have acknowledged enough of the previous ones. */
   void PublishFrame();
 
-  /** Sends the event "status"; to be called once a second. */
-  void PublishStatus();
+  /** Sends the event "status", and ends the waits of leases; to be called once a second. */
+  void PublishStatus(std::int64_t now_ns);
 
-  /** Registers an uploaded file. @returns the id by which a client can open it. */
-  [[nodiscard]] std::string AddUpload(const std::filesystem::path& file, const std::string& name);
+  /** Files that clients have sent, and can open by their ids. */
+  [[nodiscard]] UploadShelf& uploads() { return uploads_; }
 
   [[nodiscard]] std::size_t client_count() const { return clients_.size(); }
 
  private:
   struct Client {
-    Role role{Role::kViewer};
+    Visitor visitor;
     std::string name;  ///< That its user has given; empty: none.
     ClientLink* link{nullptr};
     std::uint32_t sent_seq{0};
@@ -117,16 +130,12 @@ class Hub {
     std::int64_t last_command_ns{0};
   };
 
-  struct Upload {
-    std::filesystem::path file;
-    std::string name;
-  };
-
   struct Caller {
     std::string id;
-    Role role;
+    Visitor visitor;
     bool has_lease;       ///< Whether it holds the lease of hand 0.
     const Json& command;  ///< The command as it was sent.
+    std::int64_t now_ns;
   };
 
   /** Runs a command with its fields. */
@@ -143,9 +152,15 @@ class Hub {
    both or neither. */
   template <typename Fields, typename Do>
   static std::pair<const std::string, Command> Entry(Do handler);
-  [[nodiscard]] Result<Json> Execute(const std::string& id, const Json& command);
+  [[nodiscard]] Result<void> CheckRoom(const Visitor& visitor) const;
+  [[nodiscard]] Result<Json> Execute(const std::string& id, const Json& command,
+                                     std::int64_t now_ns);
+  void NoteCommand(const std::string& id, const Client& client, const Json& command,
+                   const Result<Json>& result, std::int64_t now_ns);
   [[nodiscard]] bool MayDo(protocol::Right right, const Caller& caller) const;
-  Result<Json> DoOpen(const protocol::OpenCommand& command);
+  /** @returns what a caller can do who may not do this. */
+  [[nodiscard]] static std::string ExplainRight(protocol::Right right, const Caller& caller);
+  Result<Json> DoOpen(const Caller& caller, const protocol::OpenCommand& command);
   Result<Json> DoCancel();
   Result<Json> DoTake(const protocol::TakeCommand& command);
   Result<Json> DoRelease(const protocol::ReleaseCommand& command);
@@ -172,6 +187,8 @@ class Hub {
   Result<Json> DoRecord(const Caller& caller, const protocol::RecordCommand& command);
   Result<Json> DoRenameRecording(const Caller& caller,
                                  const protocol::RenameRecordingCommand& command);
+  Result<Json> DoShareRecording(const Caller& caller,
+                                const protocol::ShareRecordingCommand& command);
   Result<Json> DoDeleteRecording(const Caller& caller,
                                  const protocol::DeleteRecordingCommand& command);
   template <typename Fields>
@@ -196,9 +213,6 @@ class Hub {
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
   /** Gives the leases of hands to a client, and tells all clients; empty `id`: to nobody. */
   void GiveLease(const std::vector<std::size_t>& hands, const std::string& id);
-  [[nodiscard]] std::vector<std::size_t> HandsOf(const std::string& id) const;
-  /** What a request without a hand is for: the hands of who leads hand 0, and those of nobody. */
-  [[nodiscard]] std::vector<std::size_t> ListHandsInControl() const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void BroadcastRoles();
   [[nodiscard]] Json MakeHands() const;
@@ -208,10 +222,10 @@ class Hub {
   Workbench* workbench_;
   StudyDesk* desk_{nullptr};  ///< Null: no study is run.
   std::vector<Example> examples_;
+  AuditLog* audit_;
   std::map<std::string, Client> clients_;
-  std::map<std::string, Upload> uploads_;
-  /** Client that holds the lease, indexed by hand; empty: nobody. */
-  std::array<std::string, HandRack::kMaxHands> leases_;
+  UploadShelf uploads_;
+  HandLeases leases_;
   std::uint32_t last_id_{0};
   Json status_;
 };

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parse_json.h"
 #include "studio/event_json.h"
 #include "studio/hand_rack.h"
 
@@ -35,7 +36,8 @@ Result<Json> ParseCommand(std::string_view text) {
     fields += event == Json::parse_event_t::key ? 1 : 0;
     return fields <= kMaxFields;
   };
-  Json command = Json::parse(text, keep, /*allow_exceptions=*/false);
+  Json command =
+      IsNestedTooDeep(text) ? Json() : Json::parse(text, keep, /*allow_exceptions=*/false);
   if (fields > kMaxFields) {
     return Fail(ErrorCode::kInvalid, fmt::format("a command has at most {} fields", kMaxFields),
                 "command", "reload the page");

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 #include "studio/json.h"
 #include "studio/state_folder.h"
 
@@ -12,7 +13,7 @@ namespace hvas::studio {
 
 std::vector<std::filesystem::path> LoadRecentFiles(const std::filesystem::path& list) {
   const auto text = ReadPrivateFile(list);
-  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+  const Json json = text ? ParseJson<Json>(*text) : Json();
   std::vector<std::filesystem::path> files;
   for (const Json& entry : json.is_array() ? json : Json::array()) {
     std::error_code failed;

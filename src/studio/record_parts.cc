@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parse_json.h"
 #include "record/reader.h"
 #include "session/json_values.h"
 #include "studio/json.h"
@@ -24,7 +25,7 @@ using session::TextOr;
 
 constexpr std::int64_t kNsPerMs = 1'000'000;  // A definition.
 
-std::string Print(const Json& json) {
+std::string PrintPart(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -113,7 +114,7 @@ class Results {
 
 std::vector<std::string> PathsOf(const record::Meta& meta) {
   std::vector<std::string> paths;
-  const Json parts = Json::parse(TextOf(meta, "model_json"), nullptr, false);
+  const Json parts = ParseJson<Json>(TextOf(meta, "model_json"));
   if (parts.is_array()) {
     for (const Json& part : parts) {
       paths.push_back(TextOr(part, "path", ""));
@@ -122,15 +123,16 @@ std::vector<std::string> PathsOf(const record::Meta& meta) {
   return paths;
 }
 
-Result<std::string> Describe(record::Reader* reader, const std::string& name) {
+Result<std::string> Describe(record::Reader* reader, const RecordLabels& labels) {
   const auto events = reader->ReadEvents();
   if (!events) {
     return Unexpected(events.error());
   }
   Json json = Summarise(reader);
-  if (!name.empty()) {
-    json["name"] = name;
+  if (!labels.name.empty()) {
+    json["name"] = labels.name;
   }
+  json["is_shared"] = labels.is_shared;
   const std::string route = "/api/recording/" + json["id"].get<std::string>();
   json["scene"] = route + "/scene";
   json["glb"] = route + "/model.glb";
@@ -138,7 +140,7 @@ Result<std::string> Describe(record::Reader* reader, const std::string& name) {
   Results results(PathsOf(reader->meta()));
   Json& shown = json["events"] = Json::array();
   for (const record::Event& event : *events) {
-    Json one = event.kind == kClientEventKind ? Json::parse(event.json, nullptr, false) : Json();
+    Json one = event.kind == kClientEventKind ? ParseJson<Json>(event.json) : Json();
     if (!one.is_object()) {
       continue;
     }
@@ -149,7 +151,7 @@ Result<std::string> Describe(record::Reader* reader, const std::string& name) {
     shown.push_back(std::move(one));
   }
   json["results"] = results.MakeList();
-  return Print(json);
+  return PrintPart(json);
 }
 
 Result<std::string> ReadFrames(record::Reader* reader) {
@@ -183,16 +185,19 @@ Result<std::string> ReadAttachment(record::Reader* reader, const char* name) {
 }  // namespace
 
 Result<std::string> ReadRecordPart(const std::filesystem::path& file, RecordPart part,
-                                   const std::string& name) {
+                                   const RecordLabels& labels) {
   auto reader = record::Reader::Open(file);
   if (!reader) {
     return Unexpected(reader.error());
   }
   switch (part) {
-    case RecordPart::kSummary:
-      return Print(Summarise(&*reader));
+    case RecordPart::kSummary: {
+      Json summary = Summarise(&*reader);
+      summary["product_digest"] = LineOf(reader->meta(), kProductDigestMeta);
+      return PrintPart(summary);
+    }
     case RecordPart::kDescription:
-      return Describe(&*reader, name);
+      return Describe(&*reader, labels);
     case RecordPart::kFrames:
       return ReadFrames(&*reader);
     case RecordPart::kScene:

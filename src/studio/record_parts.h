@@ -27,11 +27,18 @@ inline constexpr const char* kGlbAttachment = "model.glb";
 inline constexpr const char* kClientEventKind =
     "told";                                       ///< Kind of events in the form that clients got.
 inline constexpr const char* kNameMeta = "name";  ///< Metadata: display name.
+/** Metadata: OpenScene::digest of the product. */
+inline constexpr const char* kProductDigestMeta = "product_digest";
+
+/** What a description says that is not in the record. */
+struct RecordLabels {
+  std::string name;  ///< Display name in place of the one in the record; empty: none.
+  bool is_shared{false};
+};
 
 /** Reads a part of a record in this process.
- @param name  Display name in place of the one in the record; empty: none.
  Errors: those of record::Reader; kUnsupported for more than a page can play. */
 [[nodiscard]] Result<std::string> ReadRecordPart(const std::filesystem::path& file, RecordPart part,
-                                                 const std::string& name = {});
+                                                 const RecordLabels& labels = {});
 
 }  // namespace hvas::studio

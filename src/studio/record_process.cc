@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/clock.h"
+#include "base/parse_json.h"
 #include "cad/worker.h"
 #include "session/json_values.h"
 
@@ -25,8 +26,7 @@ Result<std::string> UnpackOutcome(std::string_view bytes, const std::filesystem:
   if (!bytes.empty() && bytes.front() == kIsPart) {
     return std::string(bytes.substr(1));
   }
-  const Json json =
-      bytes.empty() ? Json() : Json::parse(bytes.substr(1), nullptr, /*allow_exceptions=*/false);
+  const Json json = bytes.empty() ? Json() : ParseJson<Json>(bytes.substr(1));
   constexpr auto kLast = static_cast<std::uint32_t>(ErrorCode::kInternal);
   const auto code = std::min(session::IndexOr(json, "code", kLast), kLast);
   return Fail(
@@ -48,14 +48,15 @@ std::string PackOutcome(const Result<std::string>& outcome) {
 }
 
 Result<std::string> ReadInProcess(const std::filesystem::path& file, RecordPart part,
-                                  const std::stop_token& stop, const std::string& name) {
+                                  const std::stop_token& stop, const RecordLabels& labels) {
   auto program = cad::FindWorker({"hvas-record", "HVAS_RECORD_WORKER", HVAS_BUILT_RECORD_WORKER});
   if (!program) {
     return Unexpected(program.error());
   }
   cad::WorkerCall call;
   call.program = *std::move(program);
-  call.arguments = {kRecordParts[static_cast<std::size_t>(part)], file.string(), name};
+  call.arguments = {kRecordParts[static_cast<std::size_t>(part)], file.string(), labels.name,
+                    labels.is_shared ? "shared" : "own"};
   call.deadline_ns = MonotonicNs() + kLongestNs;
   call.part_limit_ns = kLongestNs;
   call.memory = kMemory;
@@ -80,8 +81,7 @@ Result<Json> ReadSummary(const std::filesystem::path& file, const std::stop_toke
   if (!text) {
     return Unexpected(text.error());
   }
-  Json json =
-      text->size() <= kMostBytes ? Json::parse(*text, nullptr, /*allow_exceptions=*/false) : Json();
+  Json json = text->size() <= kMostBytes ? ParseJson<Json>(*text) : Json();
   // What the list of recordings relies on.
   if (session::FieldOf(json, "name") == nullptr || !json["name"].is_string() ||
       session::FieldOf(json, "started_unix_ms") == nullptr ||

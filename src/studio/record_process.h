@@ -12,14 +12,14 @@ namespace hvas::studio {
 
 /** Reads a part of a record in a process of its own, hvas-record, which may take at most 20 s and
  2 GiB of memory: whatever the file does to it, it does to no one else.
- @param name  As for ReadRecordPart().
  Errors: those of ReadRecordPart(); kUnreadable where the process failed or was ended; kCancelled
  when a stop was asked for; kNotFound without hvas-record. */
 [[nodiscard]] Result<std::string> ReadInProcess(const std::filesystem::path& file, RecordPart part,
                                                 const std::stop_token& stop,
-                                                const std::string& name = {});
+                                                const RecordLabels& labels = {});
 
-/** Reads the summary of a record. Errors: as ReadInProcess(). */
+/** Reads the summary of a record, which also has its "product_digest". Errors: as ReadInProcess().
+ */
 [[nodiscard]] Result<Json> ReadSummary(const std::filesystem::path& file,
                                        const std::stop_token& stop);
 

@@ -42,7 +42,8 @@ Result<std::shared_ptr<Recording>> Recording::Start(const std::filesystem::path&
   options.is_threaded = true;
   options.ring_ticks *= 2;  // Eight seconds of two hands, two of eight.
   options.on_error = [on_failed = std::move(on_failed)](const Error&) { on_failed(); };
-  auto recorder = assembly::MakeRecorder(*scene->model, options, {{kNameMeta, name}});
+  auto recorder = assembly::MakeRecorder(*scene->model, options,
+                                         {{kNameMeta, name}, {kProductDigestMeta, scene->digest}});
   if (!recorder) {
     return Unexpected(recorder.error());
   }

@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
+#include "studio/json_fields.h"
 #include "studio/state_folder.h"
 
 namespace hvas::studio {
@@ -20,6 +22,7 @@ namespace {
 
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
+constexpr const char* kSharedFile = "shared.json";  // Digest of the product, by id.
 
 /** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
@@ -45,7 +48,32 @@ bool IsRecordFile(const std::filesystem::directory_entry& item) {
          item.symlink_status(failed).type() == std::filesystem::file_type::regular;
 }
 
+/** Reads a file with an object of texts; empty where there is none. */
+std::map<std::string, std::string> ReadTexts(const std::filesystem::path& file) {
+  std::map<std::string, std::string> texts;
+  const auto text = ReadPrivateFile(file);
+  const Json json = text ? ParseJson<Json>(*text) : Json();
+  if (json.is_object()) {
+    for (const auto& [id, told] : json.items()) {
+      if (told.is_string()) {
+        texts[id] = told.get<std::string>();
+      }
+    }
+  }
+  return texts;
+}
+
+Result<void> WriteTexts(const std::filesystem::path& file,
+                        const std::map<std::string, std::string>& texts) {
+  const Json json(texts);
+  return WriteAtomically(file, json.dump(1, ' ', false, Json::error_handler_t::replace),
+                         FileReaders::kOwner);
+}
+
 }  // namespace
+
+RecordingShelf::RecordingShelf(std::filesystem::path folder)
+    : folder_(std::move(folder)), shared_(ReadTexts(folder_ / kSharedFile)) {}
 
 Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& product) const {
   if (folder_.empty()) {
@@ -70,7 +98,8 @@ Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& produc
   return file;
 }
 
-Json RecordingShelf::List(const std::stop_token& stop) {
+Json RecordingShelf::List(const std::optional<std::string>& shared_of,
+                          const std::stop_token& stop) {
   std::map<std::string, Entry> entries;
   std::map<std::string, Entry> known;
   {
@@ -87,8 +116,12 @@ Json RecordingShelf::List(const std::stop_token& stop) {
     const auto before = known.find(id);
     const bool is_same = before != known.end() && before->second.written == entry.written &&
                          before->second.bytes == entry.bytes;
-    entry.description = is_same ? before->second.description
-                                : ReadSummary(item.path(), stop).value_or(Json(nullptr));
+    if (is_same) {
+      entry.description = before->second.description;
+    } else if (auto summary = ReadSummary(item.path(), stop)) {
+      summary->erase("product_digest");
+      entry.description = *std::move(summary);
+    }
     if (stop.stop_requested()) {
       break;
     }
@@ -99,8 +132,11 @@ Json RecordingShelf::List(const std::stop_token& stop) {
   const auto names = ReadNames();
   std::vector<Json> list;
   for (const auto& [id, entry] : entries_) {
-    if (!entry.description.is_null()) {
+    const auto shared = shared_.find(id);
+    const bool is_shown = !shared_of || (shared != shared_.end() && shared->second == *shared_of);
+    if (!entry.description.is_null() && is_shown) {
       list.push_back(entry.description);
+      list.back()["is_shared"] = shared != shared_.end();
       const auto given = names.find(id);
       if (given != names.end()) {
         list.back()["name"] = given->second;
@@ -137,8 +173,12 @@ Result<std::string> RecordingShelf::Describe(const std::string& id,
   }
   const auto names = ReadNames();
   const auto given = names.find(id);
-  return ReadInProcess(*file, RecordPart::kDescription, stop,
-                       given != names.end() ? given->second : "");
+  RecordLabels labels{given != names.end() ? given->second : "", false};
+  {
+    const std::lock_guard lock(mutex_);
+    labels.is_shared = HasShared(id);
+  }
+  return ReadInProcess(*file, RecordPart::kDescription, stop, labels);
 }
 
 Result<void> RecordingShelf::Delete(const std::string& id) {
@@ -154,6 +194,9 @@ Result<void> RecordingShelf::Delete(const std::string& id) {
   auto names = ReadNames();
   if (names.erase(id) > 0) {
     (void)WriteNames(names);  // a left-over name without a record does no harm
+  }
+  if (shared_.erase(id) > 0) {
+    (void)WriteTexts(folder_ / kSharedFile, shared_);
   }
   return failed ? Result<void>(Fail(ErrorCode::kOutOfResource, failed.message(), file->string(),
                                     "delete the file manually"))
@@ -190,24 +233,46 @@ std::string RecordingShelf::MakeName(const std::string& product) {
 }
 
 std::map<std::string, std::string> RecordingShelf::ReadNames() const {
-  std::map<std::string, std::string> names;
-  const auto text = ReadPrivateFile(folder_ / kNamesFile);
-  const Json json = text ? Json::parse(*text, nullptr, false) : Json();
-  if (json.is_object()) {
-    for (const auto& [id, name] : json.items()) {
-      if (name.is_string()) {
-        names[id] = name.get<std::string>();
-      }
-    }
-  }
-  return names;
+  return ReadTexts(folder_ / kNamesFile);
 }
 
 Result<void> RecordingShelf::WriteNames(const std::map<std::string, std::string>& names) const {
-  const Json json(names);
-  return WriteAtomically(folder_ / kNamesFile,
-                         json.dump(1, ' ', false, Json::error_handler_t::replace),
-                         FileReaders::kOwner);
+  return WriteTexts(folder_ / kNamesFile, names);
+}
+
+bool RecordingShelf::IsShared(const std::string& id, const std::string& digest) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = shared_.find(id);
+  return found != shared_.end() && found->second == digest;
+}
+
+Result<void> RecordingShelf::Share(const std::string& id, const product::Product& product,
+                                   const std::string& digest, bool is_shared) {
+  const auto file = Find(id);
+  const auto summary = file ? ReadSummary(*file, {}) : Unexpected(file.error());
+  if (!summary) {
+    return Unexpected(summary.error());
+  }
+  // Records of before this metadata name the product only.
+  const std::string recorded = TextOr(*summary, "product_digest", "");
+  const bool is_of_product =
+      recorded.empty() ? TextOr(*summary, "product", "") == product.name : recorded == digest;
+  if (is_shared && !is_of_product) {
+    return Fail(ErrorCode::kInvalid, "this recording is of another product", id,
+                "open the product of the recording, then share it");
+  }
+  const std::lock_guard lock(mutex_);
+  auto shared = shared_;
+  if (is_shared) {
+    shared[id] = digest;
+  } else {
+    shared.erase(id);
+  }
+  auto written = WriteTexts(folder_ / kSharedFile, shared);
+  if (written) {
+    shared_ = std::move(shared);
+  }
+  return written;
 }
 
 }  // namespace hvas::studio

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "base/result.h"
+#include "product/product.h"
 #include "studio/json.h"
 #include "studio/record_process.h"
 
@@ -19,15 +21,26 @@ namespace hvas::studio {
 class RecordingShelf {
  public:
   /** @param folder  Made with the first recording; empty: recording is switched off. */
-  explicit RecordingShelf(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit RecordingShelf(std::filesystem::path folder);
 
   /** Makes the path of a new recording of a product, and its folder. Errors: kUnsupported when
    recording is switched off; kOutOfResource when the folder cannot be made. */
   [[nodiscard]] Result<std::filesystem::path> MakePath(const std::string& product) const;
 
   /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped.
+   @param shared_of  Digest of a product: those of it alone that are shared; none: all.
    @param stop  Leaves out what is not read by then. */
-  [[nodiscard]] Json List(const std::stop_token& stop = {});
+  [[nodiscard]] Json List(const std::optional<std::string>& shared_of = std::nullopt,
+                          const std::stop_token& stop = {});
+
+  /** Whether the owner has shared a recording of the product with this digest. Reads no file. */
+  [[nodiscard]] bool IsShared(const std::string& id, const std::string& digest) const;
+
+  /** Shares a recording with all who have a link while its product is open, or no more.
+   Errors: kNotFound; kInvalid where the recording is of another product; those of WriteAtomically.
+   */
+  [[nodiscard]] Result<void> Share(const std::string& id, const product::Product& product,
+                                   const std::string& digest, bool is_shared);
 
   /** Path of a recording. Errors: kNotFound. */
   [[nodiscard]] Result<std::filesystem::path> Find(const std::string& id) const;
@@ -56,6 +69,9 @@ class RecordingShelf {
   [[nodiscard]] std::map<std::string, std::string> ReadNames() const;
   [[nodiscard]] Result<void> WriteNames(const std::map<std::string, std::string>& names) const;
 
+  /** Whether a recording is on the list of those shared. @pre the mutex is locked. */
+  [[nodiscard]] bool HasShared(const std::string& id) const { return shared_.count(id) > 0; }
+
   /** Cached description of a file; valid while the file's time and size are these. */
   struct Entry {
     std::filesystem::file_time_type written;
@@ -64,8 +80,9 @@ class RecordingShelf {
   };
 
   std::filesystem::path folder_;
-  std::mutex mutex_;
-  std::map<std::string, Entry> entries_;  ///< Cache, by id.
+  mutable std::mutex mutex_;
+  std::map<std::string, Entry> entries_;       ///< Cache, by id.
+  std::map<std::string, std::string> shared_;  ///< Digest of the product, by id of those shared.
 };
 
 }  // namespace hvas::studio

@@ -12,7 +12,7 @@ namespace {
 using simulation::DisassemblyPlan;
 using simulation::Removal;
 
-Json ToJson(const Removal& removal) {
+Json DescribeRemoval(const Removal& removal) {
   Json occurrences = Json::array({removal.step.occurrence.value()});
   for (const product::OccurrenceId member : removal.step.members) {
     occurrences.push_back(member.value());
@@ -33,7 +33,7 @@ Result<Json> Describe(const Result<DisassemblyPlan>& plan) {
   }
   Json removals = Json::array();
   for (const Removal& removal : plan->removals) {
-    removals.push_back(ToJson(removal));
+    removals.push_back(DescribeRemoval(removal));
   }
   return Json{{"removals", std::move(removals)}, {"is_smallest", plan->is_smallest}};
 }

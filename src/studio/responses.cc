@@ -97,10 +97,14 @@ Result<Response> MakePathResponse(const Sweeper& sweeper, std::string_view name)
 }
 
 /** @param rest  Path below /api/recordings/: id, and the resource of it. */
-Result<Response> MakeRecordingResponse(RecordingShelf* shelf, std::string_view rest,
-                                       const std::stop_token& stop) {
+Result<Response> MakeRecordingResponse(WorkbenchRecordings* recordings, std::string_view rest,
+                                       bool is_owner, const std::stop_token& stop) {
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string id(rest.substr(0, slash));
+  RecordingShelf* shelf = &recordings->shelf();
+  if (!is_owner && !shelf->IsShared(id, recordings->FindDigest())) {
+    return Fail(ErrorCode::kNotFound, "there is no such recording", "", "reload the list");
+  }
   const std::string_view what = rest.substr(slash);
   if (what.empty()) {
     return MakeOwnedResponse(kJsonType, shelf->Describe(id, stop));
@@ -153,7 +157,8 @@ Result<Response> MakeAssetResponse(std::string_view path, std::string_view accep
   return response;
 }
 
-Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bool is_shielded,
+Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
+                                 const Visitor& visitor, bool is_shielded,
                                  std::string_view accepted, const std::stop_token& stop) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
@@ -165,7 +170,9 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
     return FailNotFound(path);
   }
   if (path == "/api/recordings") {
-    return MakeOwnedResponse(workbench->recordings().shelf().List(stop));
+    return MakeOwnedResponse(workbench->recordings().shelf().List(
+        visitor.is_owner ? std::nullopt : std::optional(workbench->recordings().FindDigest()),
+        stop));
   }
   if (path.starts_with(kModel)) {
     return MakeModelResponse(workbench->live(), path.substr(kModel.size()), accepted);
@@ -174,8 +181,8 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path, bo
     return MakePathResponse(workbench->sweeper(), path.substr(kPath.size()));
   }
   if (path.starts_with(kRecording)) {
-    return MakeRecordingResponse(&workbench->recordings().shelf(), path.substr(kRecording.size()),
-                                 stop);
+    return MakeRecordingResponse(&workbench->recordings(), path.substr(kRecording.size()),
+                                 visitor.is_owner, stop);
   }
   return FailNotFound(path);
 }

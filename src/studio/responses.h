@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "studio/access.h"
 #include "studio/workbench.h"
 
 namespace hvas::studio {
@@ -27,15 +28,16 @@ struct Response {
  @param accepted  Value of Accept-Encoding. Errors: kNotFound. */
 [[nodiscard]] Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted);
 
-/** Serves a resource below /api/ to a client with a session (docs/protocol.md). May take long: not
- for the network thread.
+/** Serves a resource below /api/ to a client with a session (docs/protocol.md). The owner gets all
+ recordings, all others those of the open product that are shared. May take long: not for the
+ network thread.
  @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
  meshes, and nothing else.
  @param accepted  Value of Accept-Encoding: scene and meshes go compressed to whoever takes gzip.
  Errors: kNotFound for unknown resources; those of reading a record.
  @param stop  Ends the reading of a record. */
 [[nodiscard]] Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
-                                               bool is_shielded = false,
+                                               const Visitor& visitor, bool is_shielded = false,
                                                std::string_view accepted = {},
                                                const std::stop_token& stop = {});
 

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/parse_json.h"
 #include "session/command_json.h"
 #include "studio/json_fields.h"
 #include "studio/state_folder.h"
@@ -56,7 +57,7 @@ Result<SavedWork> LoadWork(const std::filesystem::path& file) {
   if (!text) {
     return Unexpected(text.error());
   }
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = ParseJson<Json>(*text);
   const auto list_at = [&json](const char* name) {
     return json.contains(name) && json[name].is_array() ? json[name] : Json();
   };

@@ -55,20 +55,27 @@ LiveState CarryOver(LiveState state, const simulation::Model& before,
 }  // namespace
 
 void SceneOpener::Open(const std::filesystem::path& file, const std::string& name, When when) {
-  Post([this, file, name, when] { DoOpen(file, name, when, nullptr); });
+  Post(file, [this, file, name, when] { DoOpen(file, name, when, nullptr); });
 }
 
 void SceneOpener::Resume(const SavedWork& work) {
-  Post([this, work] { DoOpen(work.file, work.name, When::kWhole, &work); });
+  Post(work.file, [this, work] { DoOpen(work.file, work.name, When::kWhole, &work); });
 }
 
-void SceneOpener::Post(std::function<void()> job) {
+void SceneOpener::Post(const std::filesystem::path& file, std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
     opening_.request_stop();  // a newer request replaces the one in progress
     opening_ = {};
+    requested_ = file;
   }
   parts_.worker->Post([job = std::move(job)](const std::stop_token& /*stop*/) { job(); });
+}
+
+bool SceneOpener::IsInUse(const std::filesystem::path& file) const {
+  const auto scene = parts_.live->scene();
+  const std::lock_guard lock(mutex_);
+  return file == requested_ || (scene != nullptr && file == scene->file);
 }
 
 void SceneOpener::Cancel() {

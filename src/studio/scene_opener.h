@@ -60,6 +60,9 @@ class SceneOpener final : public SceneObserver {
   /** Gives up the file that is being opened. */
   void Cancel();
 
+  /** Whether a file is that of the open product, or was asked for last. */
+  [[nodiscard]] bool IsInUse(const std::filesystem::path& file) const;
+
   /** Makes the events that a client needs which joins later: that the last file could not be
    opened, where no other one is open, and that work was resumed, until the next change. */
   [[nodiscard]] std::vector<Json> MakeCatchUpEvents() const;
@@ -68,8 +71,8 @@ class SceneOpener final : public SceneObserver {
   void OnHold(const simulation::SimulationEvent& event,
               const std::optional<SceneSnapshot>& before) override;
   void OnPlacement() override;
-  /** Posts a job that takes the place of the one in progress. */
-  void Post(std::function<void()> job);
+  /** Posts a job that opens a file, in place of the one in progress. */
+  void Post(const std::filesystem::path& file, std::function<void()> job);
   /** @param kept  Saved work to resume; null: none. */
   void DoOpen(const std::filesystem::path& file, const std::string& name, When when,
               const SavedWork* kept);
@@ -87,6 +90,7 @@ class SceneOpener final : public SceneObserver {
 
   mutable std::mutex mutex_;  ///< Protects what follows.
   std::stop_source opening_;
+  std::filesystem::path requested_;  ///< File that was asked for last.
   /** Scene that takes the place of the one of its first parts; null: none. */
   std::shared_ptr<const OpenScene> whole_;
   Json failure_;  ///< Event of the last file that could not be opened; null: none.

@@ -9,6 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "studio/http_session.h"
 #include "studio/server_shared.h"
 #include "studio/tls.h"
@@ -86,6 +87,7 @@ class Server::Impl {
       shared_->SaveAccessNow(shared_->access->Keep());
     }
     shared_->hub.DropClients();
+    shared_->audit->Stop();
   }
 
   [[nodiscard]] bool has_kept_links() const { return has_kept_links_; }
@@ -170,7 +172,7 @@ class Server::Impl {
     timer_.expires_after(std::chrono::seconds(1));
     timer_.async_wait([this](error_code error) {
       if (!error) {
-        shared_->hub.PublishStatus();
+        shared_->hub.PublishStatus(MonotonicNs());
         Tick();
       }
     });

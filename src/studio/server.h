@@ -23,6 +23,7 @@ struct ServerOptions {
   std::optional<TlsFiles> tls;       ///< None: plain HTTP.
   std::filesystem::path upload_folder;  ///< Exists; no other process uses it.
   std::filesystem::path access_file;    ///< File of SavedAccess; empty: it is not saved.
+  std::filesystem::path audit_file;     ///< File of AuditLog; empty: nothing is noted.
   std::vector<std::string> reachable;   ///< Addresses for links of other machines.
   std::vector<std::string> names;       ///< Host names that it answers to besides the loopback's.
   std::uint64_t max_upload{256 << 20};  ///< Largest upload [bytes].

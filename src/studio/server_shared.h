@@ -28,11 +28,15 @@ using tcp = asio::ip::tcp;
 /** State that all sessions of the server share. For one thread. */
 struct ServerShared {
   ServerShared(Workbench* bench, std::vector<Example> examples, const ServerOptions& given)
-      : workbench(bench), hub(bench, std::move(examples)), options(given) {
+      : workbench(bench),
+        audit(std::make_unique<AuditLog>(given.audit_file)),
+        hub(bench, std::move(examples), audit.get()),
+        options(given) {
     hub.SetStudyDesk(given.desk);
   }
 
   Workbench* workbench;
+  std::unique_ptr<AuditLog> audit;
   Hub hub;
   ServerOptions options;
   std::unique_ptr<Access> access;

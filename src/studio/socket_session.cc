@@ -18,8 +18,11 @@ constexpr std::size_t kMaxQueued = 16 << 20;   // text for a client that does no
 /** Session of a WebSocket. Text is queued until sent; the hub's credits limit the queued frames. */
 class SocketSession final : public ClientLink, public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role)
-      : socket_(std::move(connection)), shared_(std::move(shared)), role_(role) {}
+  SocketSession(Connection connection, std::shared_ptr<ServerShared> shared, const Visitor& visitor)
+      : address_(connection.address()),
+        socket_(std::move(connection)),
+        shared_(std::move(shared)),
+        visitor_(visitor) {}
 
   ~SocketSession() override { Leave(); }
 
@@ -46,8 +49,10 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   }
 
   [[nodiscard]] bool is_admitted() const override {
-    return shared_->access->RoleOfCookie(cookie_).has_value();
+    return shared_->access->FindVisitor(cookie_).has_value();
   }
+
+  [[nodiscard]] std::string address() const override { return address_; }
 
   void SendFrames(std::string bytes) override { Push({std::move(bytes), false}); }
 
@@ -69,7 +74,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   };
 
   void Enter() {
-    auto joined = shared_->hub.Join(role_, this);
+    auto joined = shared_->hub.Join(visitor_, this, MonotonicNs());
     if (!joined) {
       Close(joined.error().message);
       return;
@@ -94,7 +99,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
 
   void Leave() {
     if (!id_.empty()) {
-      shared_->hub.Leave(std::exchange(id_, ""));
+      shared_->hub.Leave(std::exchange(id_, ""), MonotonicNs());
     }
   }
 
@@ -116,7 +121,7 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
    have come from all clients are looked at before any of them is handled. */
   void Receive(Message message) {
     Hub& hub = shared_->hub;
-    if (message.is_text && hub.TrySwitchForcesOff(id_, message.bytes)) {
+    if (message.is_text && hub.TrySwitchForcesOff(id_, message.bytes, MonotonicNs())) {
       std::erase_if(received_, [&](const Message& one) {
         return one.is_text && hub.TryRefuseForcesOn(id_, one.bytes);
       });
@@ -182,9 +187,10 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
                         });
   }
 
+  const std::string address_;
   websocket::stream<Connection, /*deflateSupported=*/false> socket_;
   std::shared_ptr<ServerShared> shared_;
-  Role role_;
+  const Visitor visitor_;
   std::string cookie_;  ///< Cookie header of the browser.
   std::string id_;
   beast::flat_buffer buffer_;
@@ -197,9 +203,9 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
 
 }  // namespace
 
-void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role,
-                        const http::request<http::empty_body>& request) {
-  std::make_shared<SocketSession>(std::move(connection), std::move(shared), role)->Run(request);
+void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared,
+                        const Visitor& visitor, const http::request<http::empty_body>& request) {
+  std::make_shared<SocketSession>(std::move(connection), std::move(shared), visitor)->Run(request);
 }
 
 }  // namespace hvas::studio

@@ -12,7 +12,7 @@ namespace hvas::studio {
 
 /** Upgrades a connection to a WebSocket and joins it to the hub as a client, which lives as long as
  the connection. */
-void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared, Role role,
-                        const http::request<http::empty_body>& request);
+void StartSocketSession(Connection connection, std::shared_ptr<ServerShared> shared,
+                        const Visitor& visitor, const http::request<http::empty_body>& request);
 
 }  // namespace hvas::studio

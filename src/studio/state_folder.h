@@ -29,6 +29,9 @@ class StateFolder {
 
   [[nodiscard]] std::filesystem::path access_file() const { return path_ / "access.json"; }
 
+  /** File of AuditLog. */
+  [[nodiscard]] std::filesystem::path audit_file() const { return path_ / "audit.log"; }
+
   [[nodiscard]] std::filesystem::path work_file() const { return path_ / "work.json"; }
 
   /** Folder of uploaded files; each file has a subfolder of its own. */

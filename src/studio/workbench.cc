@@ -7,7 +7,7 @@ namespace hvas::studio {
 Workbench::Workbench(const WorkbenchOptions& options)
     : builder_(options.scenes),
       live_({options.scenes.seed, options.rate_hz, options.guidance, options.clock}, &events_),
-      hands_(&live_, &events_, &worker_),
+      hands_(&live_, &events_, &worker_, options.devices),
       notes_(&live_, &events_),
       edits_(&builder_, &live_, &events_, &worker_),
       demo_(&live_, &edits_, &worker_),

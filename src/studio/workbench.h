@@ -27,8 +27,9 @@ struct WorkbenchOptions {
   SceneBuilder::Options scenes;
   std::filesystem::path recordings_folder;  ///< Empty: recording is switched off.
   std::filesystem::path work_file;  ///< File that SavedWork is saved to after changes; empty: none.
-  double rate_hz{1000};             ///< X4 asks for 1 kHz.
-  haptics::PaperGuidance guidance;  ///< Guidance of all hands outside the trials of a study.
+  std::vector<std::string> devices;  ///< Addresses that the host offers; see DeviceList.
+  double rate_hz{1000};              ///< X4 asks for 1 kHz.
+  haptics::PaperGuidance guidance;   ///< Guidance of all hands outside the trials of a study.
   /** Clock of the loops, of the age of inputs, and of a study's training; outlives the workbench.
    */
   LoopClock* clock{&MachineClock()};

@@ -190,15 +190,21 @@ Result<void> WorkbenchHands::SetCount(std::size_t count) {
   return possible;
 }
 
-Result<void> WorkbenchHands::UseDevice(std::size_t hand, const std::string& address, double scale) {
+Result<void> WorkbenchHands::UseDevice(std::size_t hand, std::size_t device, double scale) {
+  if (device >= devices_.entries().size()) {
+    return Fail(ErrorCode::kNotFound, "there is no such device", "device",
+                "choose one of the list of devices");
+  }
   auto possible = CheckChange();
   if (possible) {
-    worker_->Post([this, hand, address, scale](const std::stop_token& /*stop*/) {
+    worker_->Post([this, hand, device, scale](const std::stop_token& /*stop*/) {
       is_changing_ = true;
       const bool is_live = !live_->clock().is_steered();
-      if (const auto used = rack_.Use(hand, address, scale, is_live); !used) {
+      if (const auto used = rack_.Use(hand, device, scale, is_live); !used) {
         is_changing_ = false;
-        events_->Publish({{"event", "failed"}, {"file", address}, {"error", ToJson(used.error())}});
+        events_->Publish({{"event", "failed"},
+                          {"file", devices_.entries()[device].name},
+                          {"error", ToJson(used.error())}});
         return;
       }
       Restart();

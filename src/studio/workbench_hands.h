@@ -31,8 +31,10 @@ struct TakenParts {
  function; all return at once, and leave slow work to the worker. */
 class WorkbenchHands final : public SceneObserver {
  public:
-  WorkbenchHands(LiveScene* live, EventBus* events, JobThread* worker)
-      : live_(live), events_(events), worker_(worker) {}
+  /** @param devices  Addresses of DeviceList. */
+  WorkbenchHands(LiveScene* live, EventBus* events, JobThread* worker,
+                 const std::vector<std::string>& devices)
+      : live_(live), events_(events), worker_(worker), devices_(devices) {}
 
   /** Takes a part with a hand that follows the pointer, with all that it was put together with or
    alone. */
@@ -51,9 +53,9 @@ class WorkbenchHands final : public SceneObserver {
   /** Sets the number of hands: 1 to HandRack::kMaxHands. Reports by the event "hands". */
   [[nodiscard]] Result<void> SetCount(std::size_t count);
 
-  /** Assigns a device, or HandRack::kPointer, to a hand. Reports by the event "hands" or
-   "failed". */
-  [[nodiscard]] Result<void> UseDevice(std::size_t hand, const std::string& address, double scale);
+  /** Assigns a device of the DeviceList to a hand. Reports by the event "hands" or "failed".
+   Errors: kNotFound for an index that the list does not have, the same for each. */
+  [[nodiscard]] Result<void> UseDevice(std::size_t hand, std::size_t device, double scale);
 
   /** Searches for devices, on a thread of its own: a product is opened meanwhile. Reports by the
    event "devices". */
@@ -61,6 +63,8 @@ class WorkbenchHands final : public SceneObserver {
 
   /** Ends the search; does nothing when it is called again. */
   void Stop() { search_thread_.Stop(); }
+
+  [[nodiscard]] const DeviceList& devices() const { return devices_; }
 
   /** Makes the field "devices" of docs/protocol.md. */
   [[nodiscard]] Json DescribeDevices() const { return device_search_.Describe(); }
@@ -88,10 +92,11 @@ class WorkbenchHands final : public SceneObserver {
   LiveScene* const live_;
   EventBus* const events_;
   JobThread* const worker_;
-  HandRack rack_;
+  const DeviceList devices_;
+  HandRack rack_{&devices_};
   /** The rack has been changed, and the run with the devices before has not ended. */
   std::atomic<bool> is_changing_{false};
-  DeviceSearch device_search_;
+  DeviceSearch device_search_{&devices_};
   JobThread search_thread_;  ///< Last member, so that it ends before the others are destroyed.
 };
 

@@ -45,7 +45,7 @@ void WorkbenchRecordings::DoStart(const std::filesystem::path& file, const std::
   auto started = Recording::Start(file, called, scene, MakeSceneJson(*scene, state), on_failed);
   if (!started) {
     events_->Publish(
-        {{"event", "failed"}, {"file", file.string()}, {"error", ToJson(started.error())}});
+        {{"event", "failed"}, {"file", "recording"}, {"error", ToJson(started.error())}});
     return;
   }
   {
@@ -115,6 +115,27 @@ Result<void> WorkbenchRecordings::Rename(const std::string& id, const std::strin
     events_->Publish({{"event", "recordings"}});
   }
   return renamed;
+}
+
+Result<void> WorkbenchRecordings::Share(const std::string& id, bool is_shared) {
+  const auto found = live_->FindScene();
+  if (!found) {
+    return Unexpected(found.error());
+  }
+  worker_->Post([this, id, is_shared, scene = *found](const std::stop_token& /*stop*/) {
+    if (const auto done = shelf_.Share(id, *scene->model->product, scene->digest, is_shared);
+        !done) {
+      events_->Publish(
+          {{"event", "failed"}, {"file", "recording"}, {"error", ToJson(done.error())}});
+    }
+    events_->Publish({{"event", "recordings"}});
+  });
+  return {};
+}
+
+std::string WorkbenchRecordings::FindDigest() const {
+  const auto scene = live_->scene();
+  return scene != nullptr ? scene->digest : std::string();
 }
 
 Result<void> WorkbenchRecordings::Delete(const std::string& id) {

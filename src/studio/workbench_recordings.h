@@ -44,6 +44,13 @@ class WorkbenchRecordings final : public SceneObserver {
 
   [[nodiscard]] Result<void> Rename(const std::string& id, const std::string& name);
 
+  /** Shares a recording of the open product, or no more. Reports by the event "recordings" or
+   "failed". Errors: those of LiveScene::FindScene. */
+  [[nodiscard]] Result<void> Share(const std::string& id, bool is_shared);
+
+  /** Digest of the open product; empty: none is open. */
+  [[nodiscard]] std::string FindDigest() const;
+
   /** Deletes a recording. Errors: kInvalid for the one in progress; those of RecordingShelf. */
   [[nodiscard]] Result<void> Delete(const std::string& id);
 

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/digest.h"
+#include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "base/write_all.h"
 
@@ -180,7 +181,7 @@ std::optional<Json> ParseLine(std::string_view line) {
   if (tab == std::string_view::npos || SumOf(line.substr(0, tab)) != line.substr(tab + 1)) {
     return std::nullopt;
   }
-  Json json = Json::parse(line.substr(0, tab), nullptr, false);
+  Json json = ParseJson<Json>(line.substr(0, tab));
   return json.is_object() ? std::optional<Json>(std::move(json)) : std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "base/units.h"
 
@@ -108,7 +109,7 @@ Result<StudyFolder> StudyFolder::Open(const fs::path& folder) {
   if (!text) {
     return Unexpected(text.error());
   }
-  const Json head = Json::parse(*text, nullptr, false);
+  const Json head = ParseJson<Json>(*text);
   const auto text_of = [&head](const char* key) {
     const auto found = head.is_object() ? head.find(key) : head.end();
     return found != head.end() && found->is_string() ? found->get<std::string>() : std::string();

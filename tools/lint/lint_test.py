@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import codes  # noqa: E402
 import constants  # noqa: E402
+import doors  # noqa: E402
 import layers  # noqa: E402
 import openings  # noqa: E402
 import pages  # noqa: E402
@@ -91,6 +92,19 @@ class Openings(unittest.TestCase):
             header = pathlib.Path(folder) / "a.h"
             header.write_text("/** The size. */\nint a;  ///< Of the file.\n/** The same again. */\nint b;  ///< Offers it.\n")
             self.assertEqual([number for _, number, _ in openings.find_openings(pathlib.Path(folder))], [2, 3])
+
+
+class Doors(unittest.TestCase):
+    def test_call_beside_its_door_is_caught_with_its_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "src" / "cad" / "a.cc"
+            source.parent.mkdir(parents=True)
+            source.write_text("int a;\nauto b = nlohmann::json::parse(text);\nauto c = ParseJson<Json>(text);\n")
+            (source.parent / "test").mkdir()
+            (source.parent / "test" / "b.cc").write_text("auto b = Json::parse(text);\n")
+            found = list(doors.find_calls(pathlib.Path(folder)))
+            self.assertEqual(len(found), 1)
+            self.assertTrue(found[0].startswith("src/cad/a.cc:2: "))
 
 
 class Constants(unittest.TestCase):

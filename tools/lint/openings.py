@@ -14,7 +14,7 @@ OPENING = re.compile(
     r"(?:/\*\*|///<) (?:Of|To|With|By|For|In|After|From|At|As|On|Until|And|Or|Else|Without|Before|Behind|Between|Through"
     r"|Over|Under|Like|The same)\b"
 )
-FOLDERS = ("src", "fuzz", "python", "include")
+FOLDERS = ("src", "fuzz", "python", "include", "bench", "products")
 
 
 def find_openings(folder):

@@ -30,6 +30,7 @@ TICK_ONLY = """
     contact/kernel_avx2 contact/kernel_scalar contact/pool contact/query contact/reduce contact/refine contact/slide
     haptics/buzz_detector haptics/constraint_solver haptics/force_map haptics/kick_detector haptics/mate_guide
     haptics/passivity_controller haptics/safety_gate haptics/thermal_limit haptics/workspace
+    haptics/write_pace
     mates/capture mates/resolve spatial/pose spatial/surface
 """.split()
 

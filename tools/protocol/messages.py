@@ -10,7 +10,7 @@ CPP = {"text": ("std::string", "TextAt"), "flag": ("bool", "FlagAt"), "index": (
        "hand": ("std::size_t", "HandAt"), "number": ("double", "NumberAt"), "FaceOf": ("PickedFace", "FaceAt"),
        "Vec3": ("Vec3", "Vec3At"),
        "AnswerValue": ("study::AnswerValue", "AnswerAt")}
-RIGHTS = {"lease": "kLease", "hand": "kHand", "operator": "kOperator", "anybody": "kAnybody"}
+RIGHTS = {"lease": "kLease", "hand": "kHand", "operator": "kOperator", "owner": "kOwner", "anybody": "kAnybody"}
 MARKS = ("<!-- {} of protocol.json -->", "<!-- end of {} -->")
 
 
@@ -267,6 +267,7 @@ def make_cpp(schema):
         "  kLease,     ///< The client with the lease of hand 0.",
         "  kHand,      ///< The client with the lease of the hand that the command names.",
         "  kOperator,  ///< An operator.",
+        "  kOwner,     ///< The owner of the studio (Visitor::is_owner).",
         "  kAnybody,",
         "};",
         "",

@@ -193,11 +193,11 @@ describe("a histogram", () => {
 describe("hands", () => {
   const mouse: HandSetup = {
     hand: 0,
-    device: { address: "pointer", name: "Mouse", model: "", serial: "", is_emulated: false, has_force: true, has_torque: true, max_force_n: 8, scale: 1, notes: [] },
+    device: { index: 0, name: "Mouse", model: "", serial: "", is_emulated: false, has_force: true, has_torque: true, max_force_n: 8, scale: 1, notes: [] },
     condition: "ready",
     lease: null,
   };
-  const touch: HandSetup = { ...mouse, hand: 1, device: { ...mouse.device, address: "touch:0" } };
+  const touch: HandSetup = { ...mouse, hand: 1, device: { ...mouse.device, index: 5 } };
 
   it("follow the mouse where they are the mouse's and this page leads them", () => {
     expect(isPointerHand([mouse, touch], [0, 1], 0)).toBe(true);

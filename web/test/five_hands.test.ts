@@ -16,7 +16,7 @@ import { handsFrame, toyDetail, toyScene } from "./toy_recording";
 const kFive = [0, 1, 2, 3, 4];
 
 function setup(hand: number): HandSetup {
-  const device = { address: "pointer", name: "pointer", model: "", serial: "", is_emulated: false, has_force: false, has_torque: false };
+  const device = { index: 0, name: "pointer", model: "", serial: "", is_emulated: false, has_force: false, has_torque: false };
   return { hand, device: { ...device, max_force_n: 0, scale: 1, notes: [] }, condition: "ready", lease: null };
 }
 

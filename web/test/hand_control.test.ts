@@ -17,8 +17,8 @@ const eye: Eye = {
   metresPerPixel: () => 1e-3,
 };
 
-function setup(hand: number, address = "pointer", isEmulated = false): HandSetup {
-  const device = { address, name: address, model: "", serial: "", is_emulated: isEmulated, has_force: true, has_torque: true };
+function setup(hand: number, index = 0, isEmulated = false): HandSetup {
+  const device = { index, name: `device ${index}`, model: "", serial: "", is_emulated: isEmulated, has_force: true, has_torque: true };
   return { hand, device: { ...device, max_force_n: 8, scale: 1, notes: [] }, condition: "ready", lease: null };
 }
 
@@ -111,9 +111,9 @@ describe("the mouse with two hands", () => {
     expect(control.isBusy).toBe(false);
     expect(view.hand.value, "the one that it still leads").toBe(1);
     expect(control.canTake(2)).toBe(true);
-    store.hands.value = [setup(0), setup(1, "forcedimension")];
+    store.hands.value = [setup(0), setup(1, 3)];
     expect(control.canTake(2)).toBe(false);
-    store.hands.value = [setup(0), setup(1, "emulated:haply", true)];
+    store.hands.value = [setup(0), setup(1, 9, true)];
     expect(control.canTake(2)).toBe(true);
     store.hands.value = [setup(0)];
     expect(view.hand.value, "there is no second hand any more").toBe(0);

@@ -40,8 +40,8 @@ const scene: Scene = {
   diagnostics: [],
 };
 
-function handWith(address: string, condition: string): HandSetup {
-  const device = { address, name: address, model: "", serial: "", is_emulated: false, has_force: true, has_torque: false };
+function handWith(index: number, condition: string): HandSetup {
+  const device = { index, name: `device ${index}`, model: "", serial: "", is_emulated: false, has_force: true, has_torque: false };
   return { hand: 0, device: { ...device, max_force_n: null, scale: null, notes: [] }, condition, lease: null };
 }
 
@@ -230,9 +230,9 @@ describe("the session", () => {
     FakeWorker.last.say({ event: "device", hand: 1, condition: "ready", text: "is ready" });
     expect(store.deviceTroubles.value.size).toBe(0);
     FakeWorker.last.say({ event: "device", hand: 0, condition: "fault", text: "renders no force" });
-    FakeWorker.last.say({ event: "hands", hands: [handWith("emulated:0", "fault")] });
+    FakeWorker.last.say({ event: "hands", hands: [handWith(7, "fault")] });
     expect(store.deviceTroubles.value.get(0)).toBe("renders no force");
-    FakeWorker.last.say({ event: "hands", hands: [handWith("pointer", "ready")] });
+    FakeWorker.last.say({ event: "hands", hands: [handWith(0, "ready")] });
     expect(store.deviceTroubles.value.size).toBe(0);
     FakeWorker.last.say({ event: "recording", on: true, id: "r1", name: "First", t_s: 0 });
     expect(store.recording.value?.name).toBe("First");

@@ -11,6 +11,7 @@ const kEntry: RecordingEntry = {
   started_unix_ms: 1_700_000_000_000,
   duration_s: 5,
   is_complete: true,
+  is_shared: false,
   bytes: 1000,
 };
 

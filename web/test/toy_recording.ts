@@ -101,6 +101,7 @@ export function toyDetail(events: RecordedEvent[], durationS: number): Recording
     started_unix_ms: 1_700_000_000_000,
     duration_s: durationS,
     is_complete: true,
+    is_shared: false,
     bytes: 0,
     scene: "/api/recording/r1/scene",
     glb: "/api/recording/r1/model.glb",

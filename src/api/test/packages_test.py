@@ -24,6 +24,14 @@ def run(*command, **options):
     return result.stdout
 
 
+def refuse(*command, **options):
+    """What a program prints that ends with status 1."""
+    result = subprocess.run([str(word) for word in command], text=True, capture_output=True, **options)
+    if result.returncode != 1:
+        sys.exit(f"{' '.join(map(str, command))}\nended with {result.returncode}:\n{result.stdout}{result.stderr}")
+    return result.stdout + result.stderr
+
+
 def expect(text, part):
     if part not in text:
         sys.exit(f"this has no {part!r}:\n{text}")
@@ -58,6 +66,8 @@ def main():
         run("cmake", "-S", stranger, "-B", stranger / "build", f"-DCMAKE_PREFIX_PATH={root}", f"-DCMAKE_CXX_COMPILER={compiler}")
         run("cmake", "--build", stranger / "build")
         expect(run(stranger / "build/mine", product, env=environment), "3 parts")
+        for arguments in ([], [product, product]):
+            expect(refuse(stranger / "build/mine", *arguments, env=environment), "usage: mine FILE")
 
         python = {**environment, "PYTHONPATH": str(root / "lib/python3/dist-packages")}
         expect(run("/usr/bin/python3", "-c", SCRIPT, product, env=python), "True 99e6142371dba9f4efd4ec764a949aab")

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parse_json.h"
 #include "base/regular_file.h"
 #include "session/command_json.h"
 #include "simulation/step_check.h"
@@ -51,7 +52,7 @@ Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::pa
     return Unexpected(text.error());
   }
   constexpr const char* kRemedy = "write it with hvas plan FILE -o plan.json";
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto json = ParseJson<nlohmann::json>(*text);
   const bool is_plan = json.is_object() && json.contains("followed") &&
                        json["followed"].is_object() && json["followed"].contains("parts") &&
                        json["followed"]["parts"].is_array() && json["followed"].contains("steps");

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "mates/located_json.h"
@@ -165,7 +166,7 @@ Result<RecordedEvents> ReadRecordedEvents(const std::filesystem::path& file,
 
 /** Where a part was let go, by its event. */
 Result<Pose> ReadDrop(const record::Event& event, const std::string& name) {
-  const Json details = Json::parse(event.json, nullptr, false);
+  const Json details = ParseJson<Json>(event.json);
   const auto read = [&](const char* key) {
     return details.is_object() && details.contains(key) ? details[key] : Json();
   };
@@ -233,7 +234,7 @@ Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& met
                                                          const std::string& name,
                                                          const Product& product) {
   const auto found = meta.find("model_json");
-  const Json parts = Json::parse(found != meta.end() ? found->second : "", nullptr, false);
+  const Json parts = ParseJson<Json>(found != meta.end() ? found->second : "");
   std::map<std::string_view, OccurrenceId> by_path;
   for (const product::Occurrence& occurrence : product.occurrences) {
     by_path.emplace(occurrence.path, occurrence.id);

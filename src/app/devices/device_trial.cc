@@ -6,79 +6,22 @@
 #include <cstdio>
 #include <numbers>
 #include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "app/devices/devices_report.h"
+#include "app/devices/floor_trial.h"
 #include "app/devices/latency_json.h"
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
-#include "base/clock.h"
 #include "base/histogram.h"
-#include "base/triple_buffer.h"
+#include "base/loop_clock.h"
 #include "device/opened_device.h"
-#include "haptics/coupling_rule.h"
-#include "haptics/passivity_controller.h"
 #include "haptics/safety_gate.h"
-#include "simulation/device_session.h"
 #include "simulation/realtime_thread.h"
 
 namespace hvas::app {
 namespace {
-
-/** What the loop tells whoever watches. */
-struct TrialState {
-  device::DeviceState device;
-  spatial::Wrench F_H_D;
-  std::uint32_t gate_actions{0};
-};
-
-/** A horizontal floor through D's origin, felt through passivity control and the gate. */
-class FloorTrial {
- public:
-  FloorTrial(device::Device* device, double rate_hz)
-      : device_(device),
-        up_D_(device->info().profile.q_UD.conjugate() * Vec3::UnitZ()),
-        gains_(haptics::ChooseCoupling(device->info().profile, 1, 1 / rate_hz)),
-        passivity_(haptics::MakePassivityController(device->info().profile, 1 / rate_hz)),
-        gate_(haptics::MakeSafetyLimits(device->info().profile)) {}
-
-  /** @param dt  Since the last tick began [s]: what is late must not look like a leap. */
-  void Tick(double dt) noexcept {
-    TrialState& state = states_.back();
-    state.device = simulation::ReadDevice(device_);
-    const device::DeviceState& now = state.device;
-    const double depth = -up_D_.dot(now.X_DH.p());
-    spatial::Wrench F;
-    if (now.is_valid && depth > 0) {
-      F.f = std::max(0.0, gains_.k_lin * depth - gains_.b_lin * up_D_.dot(now.V_DH.v)) * up_D_;
-    }
-    F = passivity_.Limit(now.X_DH, F, std::numeric_limits<double>::quiet_NaN(), 0, dt);
-    state.F_H_D = gate_.Pass(haptics::MakeGateInput(now, F, dt, &last_sample_ns_));
-    passivity_.Write(state.F_H_D);
-    device_->Write(state.F_H_D);
-    state.gate_actions = gate_.actions();
-    states_.Publish();
-  }
-
-  /** The newest state, for one other thread. */
-  const TrialState& ReadState() {
-    states_.Update();
-    return states_.value();
-  }
-
-  [[nodiscard]] const haptics::CouplingGains& gains() const { return gains_; }
-
- private:
-  device::Device* device_;
-  std::int64_t last_sample_ns_{0};
-  Vec3 up_D_;
-  haptics::CouplingGains gains_;
-  haptics::PassivityController passivity_;
-  haptics::SafetyGate gate_;
-  TripleBuffer<TrialState> states_;
-};
 
 /** The hand of an emulated device: slowly down into the floor and up again, in two seconds. It
  takes the handle anew each time, as a person would after an alarm. */
@@ -119,7 +62,8 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
   }
   device::Device& device = *opened->device;
   fmt::print("{}", DescribeDevice(device.info()));
-  FloorTrial trial(&device, options.rate_hz);
+  const LoopClock& clock = MachineClock();
+  FloorTrial trial(&device, options.rate_hz, clock);
   fmt::print("A horizontal floor of {:.0f} N/m is in the middle of the workspace. Press on it.\n",
              trial.gains().k_lin);
   std::atomic<bool> is_stopping{false};
@@ -129,13 +73,11 @@ int RunDeviceTrial(const DeviceTrialOptions& options) {
   std::thread loop([&] {
     grant = simulation::RequestRealtime();
     simulation::Pacer pacer(std::llround(1e9 / options.rate_hz));
-    std::int64_t last_ns = MonotonicNs();
     while (!is_stopping.load(std::memory_order_relaxed)) {
       wake_up.Add(pacer.Wait());
-      const std::int64_t start_ns = MonotonicNs();
-      trial.Tick(1e-9 * static_cast<double>(start_ns - last_ns));
-      last_ns = start_ns;
-      work.Add(MonotonicNs() - start_ns);
+      const std::int64_t start_ns = clock.NowNs();
+      trial.Tick();
+      work.Add(clock.NowNs() - start_ns);
     }
   });
   constexpr double kStep = 0.002;     // [s]: the eye and the hand follow no faster. A choice.

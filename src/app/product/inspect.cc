@@ -15,6 +15,7 @@
 #include "app/product/product_json.h"
 #include "app/product/product_text.h"
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 #include "mates/relations.h"
 #include "mates/side_file.h"
 
@@ -33,7 +34,7 @@ Result<void> KeepLists(const std::filesystem::path& file, nlohmann::ordered_json
       !read) {
     return Unexpected(read.error());
   }
-  const auto old = nlohmann::ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const auto old = ParseJson<nlohmann::ordered_json>(*text);
   for (const char* list : {"mates", "removed", "relations", "contacts", "apart", "flexible"}) {
     if (old.is_object() && old.contains(list)) {
       (*document)[list] = old[list];

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "base/parse_json.h"
 
 namespace hvas::app {
 
@@ -23,7 +24,7 @@ Result<SideDocument> SideDocument::Open(const std::filesystem::path& file) {
     return Unexpected(contents.error());
   }
   document.contents_ = *std::move(contents);
-  document.json_ = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  document.json_ = ParseJson<ordered_json>(*text);
   document.json_["format"] = mates::kSideFileFormat;
   return document;
 }

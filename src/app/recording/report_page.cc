@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "base/units.h"
 #include "evidence/picture.h"
 #include "evidence/session_data.h"
@@ -328,7 +329,7 @@ std::string MakeLoops(const Summary& summary) {
 
 /** What an event says, in words. */
 std::string Explain(const record::Event& event) {
-  const auto json = nlohmann::json::parse(event.json, nullptr, false);
+  const auto json = ParseJson<nlohmann::json>(event.json);
   if (event.kind == "flight" || !json.is_object()) {
     return "the last second of ticks was kept";
   }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "cad/scene/placed_parts.h"
 
 namespace hvas::cad {
@@ -51,7 +52,7 @@ std::vector<std::uint64_t> NumbersOf(const Json& object, const char* key) {
 }  // namespace
 
 double CountGltfNodes(std::span<const std::byte> bytes) {
-  const Json json = Json::parse(FindDocument(bytes), nullptr, /*allow_exceptions=*/false);
+  const Json json = ParseJson<Json>(FindDocument(bytes));
   Uses uses;
   std::uint64_t number = 0;
   for (const Json& node : ListOf(json, "nodes")) {

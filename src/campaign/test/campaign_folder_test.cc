@@ -169,7 +169,7 @@ TEST_F(CampaignFolderTest, ATableThatCannotBeWrittenIsAnErrorAndTheShardsStay) {
   EXPECT_TRUE(folder.ListMissing().empty());
 }
 
-TEST_F(CampaignFolderTest, AShardThatIsAPipeOrHasOtherTablesIsDamagedAndCalculatedAgain) {
+TEST_F(CampaignFolderTest, AShardThatIsAPipeOrHasOtherTablesIsDamagedAndIsNeverWaitedFor) {
   const CampaignFolder folder = MakeFolder("strange", MakePlan(50));
   Run(folder, 1);
   const std::filesystem::path pipe = folder.PathOf(0);
@@ -186,8 +186,8 @@ TEST_F(CampaignFolderTest, AShardThatIsAPipeOrHasOtherTablesIsDamagedAndCalculat
     EXPECT_NE(rows.error().message.find(shard == 0 ? "pipe" : "\"more\""), std::string::npos)
         << rows.error().message;
   }
+  std::filesystem::remove(pipe);  // Nothing is written over what is no file.
   EXPECT_EQ(Run(folder, 1).calculated, 2);
-  EXPECT_TRUE(std::filesystem::is_regular_file(pipe));
 }
 
 TEST_F(CampaignFolderTest, AnotherPlanProgramOrProductIsRefused) {

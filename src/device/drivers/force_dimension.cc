@@ -243,7 +243,7 @@ class DhdDevice final : public VendorDevice {
     const auto started = OpenFirst(library_, info().serial);
     if (started) {  // It is not calibrated here: that would move it under somebody's hand.
       id_ = started->id;
-      Prepare(dhd_, *started);
+      Prepare(dhd_, {started->id, info()});
       is_open_ = true;
     }
     return is_open_;
@@ -327,9 +327,9 @@ class DhdDriver final : public Driver {
                 "number of the device, for example \"forcedimension:0\"; default: the first free "
                 "one. An uncalibrated device moves by itself when it is opened"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override;
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override;
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override;
 
  private:
@@ -349,8 +349,8 @@ class DhdDriver final : public Driver {
   }
 };
 
-Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
-                                                const Surroundings& surroundings) const {
+Result<std::unique_ptr<Device>> DhdDriver::OpenUnchecked(const std::string& address,
+                                                         const Surroundings& surroundings) const {
   int number = -1;
   if (!address.empty()) {
     const auto [end, error] =
@@ -377,7 +377,7 @@ Result<std::unique_ptr<Device>> DhdDriver::Open(const std::string& address,
   return std::make_unique<DhdDevice>(*library, *started, *surroundings.clock);
 }
 
-ProbeReport DhdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
+ProbeReport DhdDriver::ProbeUnchecked(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "Force Dimension", &report);
   const auto library = ProbeVendorLibrary<Functions>(Search(surroundings), opens_devices, &report);

@@ -430,8 +430,8 @@ class Gamepads final : public Driver {
       : Driver({kName, "Gamepad or joystick (Linux evdev)",
                 "[NODE], for example gamepad:/dev/input/event5"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override {
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override {
     ProbeReport report = BeginReport();
     bool has_any = false;
     for (const std::filesystem::path& path : FindNodes(surroundings.root)) {
@@ -459,7 +459,7 @@ class Gamepads final : public Driver {
     return report;
   }
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override {
     if (!address.empty()) {
       return OpenNode(address, surroundings);

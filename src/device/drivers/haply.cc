@@ -148,7 +148,7 @@ class Conversation {
     }
     commands_.Update();
     const Command& command = commands_.value();
-    said_ = ShareOfAge(clock_.NowNs() - command.t_ns) * command.force;
+    said_ = hold_.CalcShare(command.t_ns, clock_.NowNs()) * command.force;
     socket_->Send(
         haply::ForceMessage(dialect_, device_id_, said_, std::exchange(is_first_, false)));
   }
@@ -222,6 +222,7 @@ class Conversation {
   const Clock& clock_;
   std::unique_ptr<WebSocket> socket_;
   TripleBuffer<Command> commands_;
+  ForceHold hold_;
   TripleBuffer<DeviceState> states_;
   haply::Message newest_;
   haply::Dialect dialect_{haply::Dialect::kVector};
@@ -344,8 +345,8 @@ class Haply final : public Driver {
                 "[HOST[:PORT]][/DEVICE_ID] of the Inverse Service, for example "
                 "haply:localhost:10001/049D"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override {
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override {
     ProbeReport report = BeginReport();
     const auto device = OpenAt(HaplyAddress{}, surroundings, &report.looked_for);
     if (!device) {
@@ -356,7 +357,7 @@ class Haply final : public Driver {
     return report;
   }
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& text, const Surroundings& surroundings) const override {
     const auto address = ParseAddress(text);
     if (!address) {

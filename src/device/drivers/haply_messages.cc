@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
+
 namespace hvas::device::haply {
 namespace {
 
@@ -103,7 +105,7 @@ std::optional<Dialect> DialectOf(std::string_view version) {
 
 Message ParseMessage(std::string_view text, const std::string& device_id) {
   Message message;
-  const json document = json::parse(text, nullptr, false);
+  const json document = ParseJson<json>(text);
   if (!document.is_object()) {
     return message;
   }

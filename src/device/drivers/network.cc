@@ -234,9 +234,6 @@ Refusal NetworkDevice::Take(const network::Opened& opened, const Endpoint& sende
 }
 
 Refusal NetworkDevice::Take(const network::Hello& hello, const Endpoint& sender) noexcept {
-  if (!network::IsPlausible(hello)) {
-    return Refusal::kMalformed;
-  }
   if (has_hello_ && !IsSameDevice(hello)) {
     return Refusal::kForeignSession;
   }
@@ -325,8 +322,8 @@ class Network final : public Driver {
                 "[[HOST:]PORT][?key=FILE] to listen on, for example "
                 "network:127.0.0.1:47811?key=/etc/hvas/network.key"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override {
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override {
     ProbeReport report = BeginReport();
     const std::filesystem::path file = surroundings.root / kDefaultKey;
     const auto key = LoadKey(file);
@@ -345,7 +342,7 @@ class Network final : public Driver {
     return opens_devices && bound ? Wait(std::move(report), surroundings) : report;
   }
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& text, const Surroundings& surroundings) const override {
     const auto address = ParseAddress(text, surroundings);
     if (!address) {

@@ -297,17 +297,6 @@ Refusal SequenceWindow::Take(std::uint64_t sequence) noexcept {
   return Refusal::kLate;
 }
 
-bool IsPlausible(const Hello& hello) noexcept {
-  const auto& limits = hello.limits;
-  const bool are_amounts = std::all_of(limits.begin(), limits.end(), [](double limit) {
-    return std::isfinite(limit) && limit >= 0 && limit < 1e6;
-  });
-  const bool are_axes = (hello.force_axes == 0 || hello.force_axes == 3) &&
-                        (hello.torque_axes == 0 || hello.torque_axes == 3);
-  return are_amounts && are_axes && hello.button_count <= 32 && limits[1] <= limits[0] &&
-         limits[3] <= limits[2];
-}
-
 DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   const auto has = [&hello](HelloFlag flag) { return (hello.flags & flag) != 0; };
   DeviceInfo info;
@@ -326,7 +315,7 @@ DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   info.capabilities.button_count = hello.button_count;
   info.profile = FindProfile("network")->profile;
   for (std::size_t i = 0; i < hello.limits.size(); ++i) {
-    if (hello.limits[i] > 0) {
+    if (hello.limits[i] != 0) {
       double& figure = i < kEdges ? info.profile.*kLimits[i]
                                   : info.profile.workspace[static_cast<Eigen::Index>(i - kEdges)];
       figure = hello.limits[i];
@@ -338,9 +327,14 @@ DeviceInfo InfoOf(const Hello& hello, const std::string& address) {
   if (hello.torque_axes == 0) {
     info.profile.max_torque = info.profile.continuous_torque = 0;
   }
-  info.profile.continuous_force = std::min(info.profile.continuous_force, info.profile.max_force);
-  info.profile.continuous_torque =
-      std::min(info.profile.continuous_torque, info.profile.max_torque);
+  // HVAS's own continuous limits stand in for those that the device does not know.
+  if (hello.limits[1] == 0) {
+    info.profile.continuous_force = std::min(info.profile.continuous_force, info.profile.max_force);
+  }
+  if (hello.limits[3] == 0) {
+    info.profile.continuous_torque =
+        std::min(info.profile.continuous_torque, info.profile.max_torque);
+  }
   info.profile_note = "limits, workspace, resolution, rate and delay are as reported by the device";
   return info;
 }

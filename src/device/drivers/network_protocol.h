@@ -167,10 +167,8 @@ class SequenceWindow {
   std::uint64_t seen_count_{0};
 };
 
-/** Whether what a hello tells can be; a device that says nothing about a limit sends 0. */
-[[nodiscard]] bool IsPlausible(const Hello& hello) noexcept;
-
-/** Not RT-safe. */
+/** What a hello tells, whether it can be or not (CheckInfo); a device that says nothing about a
+ limit sends 0. Not RT-safe. */
 [[nodiscard]] DeviceInfo InfoOf(const Hello& hello, const std::string& address);
 /** Serves those who write the device's side in C++. Not RT-safe. */
 [[nodiscard]] Hello HelloOf(const DeviceInfo& info, std::uint64_t nonce);

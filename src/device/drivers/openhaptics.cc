@@ -316,6 +316,7 @@ class HdDevice final : public VendorDevice {
   TripleBuffer<Force> forces_;
 
   // The scheduler's alone.
+  ForceHold hold_;
   std::array<double, 16> last_transform_{};
   std::int64_t calibrate_ns_{0};
 };
@@ -412,13 +413,14 @@ void HdDevice::Tick() noexcept {
   const std::int64_t now_ns = NowNs();
   forces_.Update();
   const Force& force = forces_.value();
+  const double share = hold_.CalcShare(force.t_ns, now_ns);
   hd.hdBeginFrame(device_);
   Sample sample = Sense();
   if (const Condition calibration = CheckCalibration(now_ns); calibration != Condition::kReady) {
     sample.state.condition = calibration;
   }
   const bool shows = sample.is_new && sample.state.condition == Condition::kReady;
-  const Vec3 f = shows ? Vec3(ShareOfAge(now_ns - force.t_ns) * force.f) : Vec3::Zero();
+  const Vec3 f = shows ? Vec3(share * force.f) : Vec3::Zero();
   hd.hdSetDoublev(kForce, f.data());
   hd.hdEndFrame(device_);
   const std::uint32_t error = DrainErrors(hd);
@@ -437,10 +439,10 @@ class HdDriver final : public Driver {
                 "name of the device in the vendor's setup program, for example "
                 "\"openhaptics:Default Device\"; default: the first one"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override;
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override;
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override {
     std::vector<Finding> looked_for;
     auto library = Load(surroundings, &looked_for);
@@ -486,7 +488,7 @@ Result<Library*> HdDriver::Load(const Surroundings& surroundings,
   return libraries.emplace(loaded->path(), std::move(fresh)).first->second.get();
 }
 
-ProbeReport HdDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
+ProbeReport HdDriver::ProbeUnchecked(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
   ProbeUsb(surroundings, kUsbVendor, "3D Systems", &report);
   const auto library = ProbeLibrary(

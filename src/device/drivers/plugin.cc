@@ -1,8 +1,6 @@
 // Devices behind the C interface of device/plugin/hvas_device_plugin.h (docs/devices/plugin.md).
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <system_error>
@@ -161,20 +159,6 @@ DeviceProfile ProfileOf(const HvasDeviceDescription& d) {
   return profile;
 }
 
-bool IsPlausible(const HvasDeviceDescription& d) {
-  const auto is_amount = [](double value) { return std::isfinite(value) && value >= 0; };
-  bool is_plausible = (d.force_axes == 0 || d.force_axes == 3) &&
-                      (d.torque_axes == 0 || d.torque_axes == 3) && d.button_count <= 32 &&
-                      d.rate_hz > 0 && VectorOf(d.workspace).minCoeff() > 0;
-  for (const double value : {d.max_force, d.continuous_force, d.max_torque, d.continuous_torque,
-                             d.max_stiffness, d.max_damping, d.max_rotational_stiffness,
-                             d.max_rotational_damping, d.position_resolution, d.rotation_resolution,
-                             d.rate_hz, d.delay, d.workspace[0], d.workspace[1], d.workspace[2]}) {
-    is_plausible = is_plausible && is_amount(value);
-  }
-  return is_plausible && d.continuous_force <= d.max_force && d.continuous_torque <= d.max_torque;
-}
-
 DeviceInfo InfoOf(const HvasDeviceDescription& d, const std::string& address) {
   const auto has = [&d](std::uint32_t flag) { return (d.flags & flag) != 0; };
   DeviceInfo info;
@@ -264,12 +248,6 @@ Result<std::unique_ptr<Device>> OpenPlugin(const std::string& address,
   }
   HvasDeviceDescription description = DefaultDescription();
   (*plugin)->describe(device, &description);
-  if (!IsPlausible(description)) {
-    (*plugin)->close(device);
-    return Fail(
-        ErrorCode::kInvalid, "the plug-in reports impossible properties of its device", file,
-        "limits must be 0 or more, peaks not below continuous limits, axes 0 or 3, edges above 0");
-  }
   return std::make_unique<PluginDevice>(std::move(*library), *plugin, device,
                                         InfoOf(description, address), *surroundings.clock);
 }
@@ -280,8 +258,8 @@ class Plugins final : public Driver {
       : Driver({kName, "Plug-in (a shared library for a device that HVAS does not know)",
                 "FILE[?ARGUMENT], for example plugin:/opt/lab/our_arm.so?port=3"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override {
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override {
     ProbeReport report = BeginReport();
     const std::filesystem::path folder = surroundings.root / kFolder;
     for (const std::filesystem::path& file : FilesIn(folder)) {
@@ -304,7 +282,7 @@ class Plugins final : public Driver {
     return report;
   }
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override {
     if (!address.empty()) {
       return OpenPlugin(address, surroundings);

@@ -204,8 +204,8 @@ class SpaceMouses final : public Driver {
       : Driver({kName, "3Dconnexion SpaceMouse (spacenavd)",
                 "[SOCKET] of spacenavd, for example spacemouse:/var/run/spnav.sock"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override {
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override {
     ProbeReport report = BeginReport();
     const std::filesystem::path path = FindSocket("", surroundings);
     const auto device = Open("", surroundings);
@@ -218,7 +218,7 @@ class SpaceMouses final : public Driver {
     return report;
   }
 
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override {
     const std::filesystem::path path = FindSocket(address, surroundings);
     Descriptor socket = TryConnect(path.c_str(), SOCK_STREAM);

@@ -321,9 +321,9 @@ class VirtDriver final : public Driver {
                 "host and port of its controller, for example \"virtuose:192.168.1.2#5000\"; "
                 "default: 127.0.0.1#5000"}) {}
 
-  [[nodiscard]] ProbeReport Probe(const Surroundings& surroundings,
-                                  bool opens_devices) const override;
-  [[nodiscard]] Result<std::unique_ptr<Device>> Open(
+  [[nodiscard]] ProbeReport ProbeUnchecked(const Surroundings& surroundings,
+                                           bool opens_devices) const override;
+  [[nodiscard]] Result<std::unique_ptr<Device>> OpenUnchecked(
       const std::string& address, const Surroundings& surroundings) const override;
 
  private:
@@ -341,8 +341,8 @@ class VirtDriver final : public Driver {
   }
 };
 
-Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
-                                                 const Surroundings& surroundings) const {
+Result<std::unique_ptr<Device>> VirtDriver::OpenUnchecked(const std::string& address,
+                                                          const Surroundings& surroundings) const {
   std::vector<Finding> looked_for;
   const auto library = LoadVendorLibrary<Functions>(Search(surroundings), &looked_for);
   if (!library) {
@@ -361,7 +361,7 @@ Result<std::unique_ptr<Device>> VirtDriver::Open(const std::string& address,
   return std::make_unique<VirtDevice>(*library, *started, *surroundings.clock);
 }
 
-ProbeReport VirtDriver::Probe(const Surroundings& surroundings, bool opens_devices) const {
+ProbeReport VirtDriver::ProbeUnchecked(const Surroundings& surroundings, bool opens_devices) const {
   ProbeReport report = BeginReport();
   const auto library = ProbeVendorLibrary<Functions>(Search(surroundings), opens_devices, &report);
   if (!library) {

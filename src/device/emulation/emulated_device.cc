@@ -54,8 +54,9 @@ const char* ToString(Fault fault) noexcept {
   return "unknown";
 }
 
-EmulatedDevice::EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH)
-    : profile_(profile), period_ns_(std::llround(1e9 / profile.rate_hz)) {
+EmulatedDevice::EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH,
+                               const DeviceProfile& claim)
+    : profile_(profile), claim_(claim), period_ns_(std::llround(1e9 / profile.rate_hz)) {
   next_sample_ns_ = period_ns_;
   truth_.X_DH = X_DH;
   history_.fill(X_DH);
@@ -87,8 +88,7 @@ void EmulatedDevice::Command(const spatial::Wrench& F_H_D) {
 }
 
 DeviceProfile EmulatedDevice::profile() const {
-  const std::scoped_lock lock(mutex_);
-  return profile_;
+  return claim_;
 }
 
 void EmulatedDevice::SetHand(const HandIntent& intent) {

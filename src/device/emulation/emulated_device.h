@@ -70,6 +70,7 @@ class EmulatedPort {
 
   [[nodiscard]] virtual EmulatedSample Sense() const = 0;
   virtual void Command(const spatial::Wrench& F_H_D) = 0;
+  /** What the device says of itself. */
   [[nodiscard]] virtual DeviceProfile profile() const = 0;
 };
 
@@ -79,7 +80,12 @@ class EmulatedPort {
  may be called from any thread; it is not RT-safe. */
 class EmulatedDevice final : public EmulatedPort {
  public:
-  explicit EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH = {});
+  /** @param claim  What it says of itself. */
+  EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH,
+                 const DeviceProfile& claim);
+
+  explicit EmulatedDevice(const DeviceProfile& profile, const spatial::Pose& X_DH = {})
+      : EmulatedDevice(profile, X_DH, profile) {}
 
   // The vendor's side.
   [[nodiscard]] EmulatedSample Sense() const override;
@@ -132,6 +138,7 @@ class EmulatedDevice final : public EmulatedPort {
 
   mutable std::mutex mutex_;
   DeviceProfile profile_;
+  DeviceProfile claim_;
   std::int64_t period_ns_;
   HandIntent hand_;
   bool has_hand_{false};

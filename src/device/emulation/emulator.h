@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ namespace hvas::device {
 
 struct EmulatorOptions {
   DeviceProfile profile;
+  /** What the device says of itself, whether it is true or not; without: the profile. */
+  std::optional<DeviceProfile> claim;
   spatial::Pose X_DH;   ///< First pose of the handle.
   bool is_live{false};  ///< Runs by the machine's clock, on a thread of its own; else by Advance.
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/parse_json.h"
 #include "device/drivers/websocket.h"
 
 namespace hvas::device {
@@ -60,7 +61,7 @@ class HaplyServer final : public WireServer {
 
  private:
   std::optional<std::string> Answer(const std::string& text) {
-    const json message = json::parse(text, nullptr, false);
+    const json message = ParseJson<json>(text);
     if (!message.is_object()) {
       return std::nullopt;
     }

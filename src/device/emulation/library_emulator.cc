@@ -40,13 +40,18 @@ int SystemTypeOf(std::string_view model) {
   return found != kTypes.end() ? found->second : 0;
 }
 
-StubTraits TraitsOf(const char* model, const LibraryManners& manners) {
+StubTraits TraitsOf(const char* model, const LibraryManners& manners,
+                    const std::optional<DeviceProfile>& claim) {
   const std::string_view name(model);
   StubTraits traits;
   traits.model = model;
   traits.system_type = SystemTypeOf(name);
   traits.has_active_wrist = name == "sigma.7" || name == "lambda.7";
   traits.has_gripper = traits.has_active_wrist || name == "omega.7";
+  if (claim) {
+    traits.max_force = claim->max_force;
+    traits.max_torque = claim->max_torque;
+  }
   traits.is_licensed = manners.is_licensed;
   traits.is_calibrated = manners.is_calibrated;
   traits.can_calibrate = manners.can_calibrate;
@@ -94,13 +99,15 @@ class LibraryEmulator final : public Emulator {
  public:
   LibraryEmulator(const Kind& kind, const StubEntry& stub, const EmulatorOptions& options,
                   const LibraryManners& manners)
-      : kind_(kind), stub_(stub), device_(options.profile, options.X_DH) {
+      : kind_(kind),
+        stub_(stub),
+        device_(options.profile, options.X_DH, options.claim.value_or(options.profile)) {
     const SourcedProfile* known = FindProfile(options.profile.id);
     const bool has_model =
         known != nullptr && known->driver == kind.driver && !known->models.empty();
     model_ = has_model ? known->models.front() : kind.model;
     EmulatedPort* const port = options.is_live ? static_cast<EmulatedPort*>(&live_) : &device_;
-    number_ = stub_.attach(port, TraitsOf(model_.c_str(), manners));
+    number_ = stub_.attach(port, TraitsOf(model_.c_str(), manners, options.claim));
     surroundings_.library_folders = {StubFolder()};
     surroundings_.root = StubFolder() / "no-machine";
     surroundings_.clock = options.is_live ? &SystemClock() : &clock_;

@@ -90,6 +90,8 @@ int Attach(EmulatedPort* port, const StubTraits& traits) {
   const int number = Slots().Attach(port, traits);
   if (DhdSlot* slot = Slots().Find(number); slot != nullptr) {
     slot->is_initialized = traits.is_calibrated;
+    slot->max_force = traits.max_force;
+    slot->max_torque = traits.max_torque;
   }
   return number;
 }

@@ -15,6 +15,8 @@ struct StubTraits {
   int system_type{0};       ///< Force Dimension's number of its type.
   bool has_gripper{false};  ///< It has a gripper, and functions for it.
   bool has_active_wrist{false};
+  double max_force{-1};           ///< Limit that its software has set [N]; negative: none.
+  double max_torque{-1};          ///< [N m]
   bool is_licensed{true};         ///< OpenHaptics has a licence.
   bool is_calibrated{true};       ///< Whether it is calibrated at first.
   bool can_calibrate{true};       ///< When asked to.

@@ -27,7 +27,7 @@ class WireEmulator final : public Emulator {
  public:
   WireEmulator(const EmulatorOptions& options, ScratchFolder folder)
       : folder_(std::move(folder)),
-        device_(options.profile, options.X_DH),
+        device_(options.profile, options.X_DH, options.claim.value_or(options.profile)),
         is_live_(options.is_live) {
     surroundings_.root = folder_.path();
     if (!is_live_) {

@@ -102,5 +102,31 @@ TEST(SampleGuardTest, AnOldWrenchFades) {  // N6: no force outlives who computed
   EXPECT_EQ(ShareOfAge(1'000'000 * kTickNs), 0);
 }
 
+// A driver's own thread that stood still: N6. What the haptic thread gave before is not shown
+// again, though it may be young enough for a thread that was there all the time.
+TEST(SampleGuardTest, WrenchOfBeforeAPauseOfTheThreadIsNotShownAfterIt) {
+  for (const std::int64_t pause : {21, 30, 60, 5000}) {
+    ForceHold hold;
+    std::int64_t t = 1000;
+    for (; t < 1100; ++t) {
+      EXPECT_EQ(hold.CalcShare(t * kTickNs, t * kTickNs), 1);
+    }
+    const std::int64_t given = t - 1;
+    t += pause;
+    for (int k = 0; k < 100; ++k) {
+      EXPECT_EQ(hold.CalcShare(given * kTickNs, (t + k) * kTickNs), 0) << pause;
+    }
+    EXPECT_EQ(hold.CalcShare((t + 100) * kTickNs, (t + 100) * kTickNs), 1);
+  }
+  ForceHold back;
+  EXPECT_EQ(back.CalcShare(1000 * kTickNs, 1000 * kTickNs), 1);
+  EXPECT_EQ(back.CalcShare(500 * kTickNs, 900 * kTickNs), 0) << "the clock went back";
+  // Without a pause it ages as before.
+  ForceHold steady;
+  for (std::int64_t age = 0; age < 100; ++age) {
+    EXPECT_EQ(steady.CalcShare(kTickNs, (1 + age) * kTickNs), ShareOfAge(age * kTickNs));
+  }
+}
+
 }  // namespace
 }  // namespace hvas::device

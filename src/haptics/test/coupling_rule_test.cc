@@ -3,10 +3,15 @@
 #include "haptics/coupling_rule.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
+#include "haptics/passivity_controller.h"
+#include "haptics/safety_gate.h"
 #include "haptics/test/values.h"
 
 namespace hvas::haptics {
@@ -78,6 +83,60 @@ TEST(CouplingRule, IsPassiveForEveryProfileByColgatesCondition) {
       EXPECT_GE(profile.damping + kGrip, gains.k_lin * late + gains.b_lin - 1e-9) << profile.id;
       EXPECT_LE(gains.k_lin, 0.5 * profile.max_stiffness) << profile.id;
       EXPECT_LE(gains.b_lin, 0.5 * profile.max_damping) << profile.id;
+    }
+  }
+}
+
+// Devices at all ends of what CheckProfile lets in: whatever they claim, all that is derived from
+// it is a number, and the gate lets through no more than the claim.
+TEST(CouplingRule, EveryProfileThatIsLetInGivesFiniteGains) {
+  using P = DeviceProfile;
+  constexpr std::array kFigures{&P::max_force,
+                                &P::continuous_force,
+                                &P::max_torque,
+                                &P::continuous_torque,
+                                &P::max_stiffness,
+                                &P::max_damping,
+                                &P::max_rotational_stiffness,
+                                &P::max_rotational_damping,
+                                &P::position_resolution,
+                                &P::rotation_resolution,
+                                &P::rate_hz,
+                                &P::mass,
+                                &P::damping,
+                                &P::rotational_damping,
+                                &P::friction,
+                                &P::rotational_friction,
+                                &P::delay};
+  Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    P profile;
+    for (double P::*figure : kFigures) {
+      const double before = profile.*figure;
+      profile.*figure =
+          i % 3 == 0 && random.NextBits() % 4 == 0 ? 0 : std::pow(10, random.Uniform(-11, 7));
+      if (!device::CheckProfile(profile, "a device")) {
+        profile.*figure = before;
+      }
+    }
+    for (const double dt : {1.25e-4, kDt}) {
+      const CouplingGains gains = ChooseCoupling(profile, 1, dt);
+      for (const double gain : {gains.k_lin, gains.b_lin, gains.k_rot, gains.b_rot}) {
+        ASSERT_TRUE(std::isfinite(gain)) << i;
+      }
+      PassivityController controller = MakePassivityController(profile, dt);
+      SafetyGate gate(MakeSafetyLimits(profile));
+      for (int k = 0; k < 50; ++k) {
+        GateInput input;
+        input.dt = dt;
+        input.F = controller.Limit(spatial::Pose(Vec3(1e-5 * k, 0, 0)),
+                                   {Vec3(0, 1e3, 0), Vec3(gains.k_lin, 1e5, 0)}, 0, 0, dt);
+        const spatial::Wrench out = gate.Pass(input);
+        ASSERT_TRUE(out.f.allFinite() && out.t.allFinite()) << i;
+        ASSERT_LE(out.f.norm(), profile.max_force * (1 + 1e-12)) << i;
+        ASSERT_LE(out.t.norm(), profile.max_torque * (1 + 1e-12)) << i;
+        controller.Write(out);
+      }
     }
   }
 }

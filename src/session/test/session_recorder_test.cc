@@ -48,6 +48,15 @@ TEST(SessionRecorderTest, KeepsAllOfASample) {
   EXPECT_EQ(context.model_age_ns, 8);
   EXPECT_TRUE(context.is_stopped);
   EXPECT_EQ(context.effort_level, 2);
+  EXPECT_EQ(context.since_write_ns, 0);
+}
+
+// N9: a replayed gate starts anew where the recorded one did.
+TEST(SessionRecorderTest, KeepsThatTheProgramStoodStill) {
+  haptics::TickOutput out;
+  out.gate_actions = haptics::kGateStalled | haptics::kGateSoftStart;
+  const haptics::TickContext context = MakeTickContext(MakeTickRecord(0, {}, out, 0));
+  EXPECT_TRUE(haptics::SafetyGate::IsStall(context.since_write_ns));
 }
 
 TEST(SessionRecorderTest, TimesOfASecondStretchGoOn) {

@@ -63,23 +63,9 @@ TEST(DeviceSessionTest, APersonAssemblesThroughADevice) {  // N8
   }
 }
 
-/** The peg with an interference in its bore. */
-std::shared_ptr<const Model> PressedPegModel() {
-  product::Product peg = testing::PegInBlock();
-  for (product::Mate& mate : peg.mates) {
-    if (mate.kind == product::MateKind::kAxisHole) {
-      mate.fit = product::Fit{product::FitKind::kInterference, "H7/s6", 2 * testing::kBoreRadius,
-                              false, "for the test"};
-    }
-  }
-  Diagnostics diagnostics;
-  return *Compile(std::make_shared<product::Product>(std::move(peg)), testing::FastOptions(),
-                  &diagnostics);
-}
-
 // The handle comes to the border on the way there, and has little room left to press into.
 TEST(DeviceSessionTest, APressFitGoesInFromTheBorderOfADevice) {
-  const auto model = PressedPegModel();
+  const auto& model = testing::PressedPegModel();
   for (const char* profile : {"sigma7", "inverse3", "network", "touch"}) {
     SCOPED_TRACE(profile);
     DeviceSession session(model, profile);

@@ -329,4 +329,19 @@ const std::shared_ptr<const Model>& PegInBlockModel() {
   return model;
 }
 
+const std::shared_ptr<const Model>& PressedPegModel() {
+  static const std::shared_ptr<const Model> model = [] {
+    Product peg = PegInBlock();
+    for (product::Mate& mate : peg.mates) {
+      if (mate.kind == product::MateKind::kAxisHole) {
+        mate.fit = product::Fit{product::FitKind::kInterference, "H7/s6", 2 * kBoreRadius, false,
+                                "for the test"};
+      }
+    }
+    Diagnostics diagnostics;
+    return *Compile(std::make_shared<Product>(std::move(peg)), FastOptions(), &diagnostics);
+  }();
+  return model;
+}
+
 }  // namespace hvas::simulation::testing

@@ -82,6 +82,9 @@ const std::shared_ptr<const Model>& PegInCarrierInCupModel();
 /** The model of PegInBlock, compiled once in a program. */
 const std::shared_ptr<const Model>& PegInBlockModel();
 
+/** The model of PegInBlock(), whose peg has an interference in its bore. */
+const std::shared_ptr<const Model>& PressedPegModel();
+
 /** No search for ways that turn, for speed. */
 CompileOptions FastOptions();
 

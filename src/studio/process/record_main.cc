@@ -22,11 +22,12 @@ int Run(std::vector<std::string> arguments) {
     return status;
   }
   const auto part = std::find(kRecordParts.begin(), kRecordParts.end(), arguments.front());
-  if (arguments.size() != 3 || part == kRecordParts.end()) {
+  if (arguments.size() != 4 || part == kRecordParts.end()) {
     return kWorkerUsage;
   }
-  const std::string output = PackOutcome(ReadRecordPart(
-      arguments[1], static_cast<RecordPart>(part - kRecordParts.begin()), arguments[2]));
+  const std::string output =
+      PackOutcome(ReadRecordPart(arguments[1], static_cast<RecordPart>(part - kRecordParts.begin()),
+                                 {arguments[2], arguments[3] == "shared"}));
   return WriteAll(kOutputDescriptor, std::as_bytes(std::span(output))) == 0 ? 0 : kWorkerNoOutput;
 }
 

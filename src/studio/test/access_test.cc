@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -30,6 +31,12 @@ std::string ComeBy(Access* access, const std::string& token, const std::string& 
   const auto admission = access->Admit(token, cookie);
   EXPECT_TRUE(admission.has_value());
   return admission ? CookieIn(admission->set_cookie) : "";
+}
+
+/** Role of the browser with a Cookie header; none: it has no session. */
+std::optional<Role> RoleOf(const Access& access, const std::string& cookie_header) {
+  const auto visitor = access.FindVisitor(cookie_header);
+  return visitor ? std::optional(visitor->role) : std::nullopt;
 }
 
 std::string ValueOf(const std::string& header) {
@@ -207,7 +214,7 @@ TEST(AccessTest, OriginAtTheSchemesOwnPortHasNone) {  // as browsers write it
 TEST(AccessTest, TokenGivesItsRole) {
   for (const Role role : kRoles) {
     Access access({}, kPort, false);
-    EXPECT_EQ(access.Admit(access.token(role), "")->role, role);
+    EXPECT_EQ(access.Admit(access.token(role), "")->visitor.role, role);
     for (const std::string& wrong :
          {std::string(), access.token(role).substr(1), access.token(role) + "A", MakeToken()}) {
       EXPECT_EQ(access.Admit(wrong, "").error().code, ErrorCode::kNotFound) << wrong;
@@ -229,7 +236,7 @@ TEST(AccessTest, LinkToSteerLetsOneBrowserIn) {
       EXPECT_EQ(again.error().code, ErrorCode::kInvalid);
       EXPECT_NE(again.error().remedy, "");
     }
-    EXPECT_EQ(access.Admit(token, first)->role, role) << "the same browser comes again";
+    EXPECT_EQ(access.Admit(token, first)->visitor.role, role) << "the same browser comes again";
     EXPECT_EQ(ComeBy(&access, token, first), first);
   }
 }
@@ -239,8 +246,8 @@ TEST(AccessTest, LinkToLookOnIsForWhoeverHasIt) {
   const std::string one = ComeBy(&access, access.token(Role::kViewer));
   const std::string other = ComeBy(&access, access.token(Role::kViewer));
   EXPECT_NE(one, other);
-  EXPECT_EQ(access.RoleOfCookie(one), Role::kViewer);
-  EXPECT_EQ(access.RoleOfCookie(other), Role::kViewer);
+  EXPECT_EQ(RoleOf(access, one), Role::kViewer);
+  EXPECT_EQ(RoleOf(access, other), Role::kViewer);
   EXPECT_EQ(access.MakeInvitation(Role::kViewer), access.token(Role::kViewer));
 }
 
@@ -249,9 +256,9 @@ TEST(AccessTest, EachInvitationLetsOneMoreBrowserIn) {
   const std::string first = access.MakeInvitation(Role::kOperator);
   const std::string second = access.MakeInvitation(Role::kOperator);
   EXPECT_NE(first, second);
-  EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, first)), Role::kOperator);
+  EXPECT_EQ(RoleOf(access, ComeBy(&access, first)), Role::kOperator);
   EXPECT_FALSE(access.Admit(first, "").has_value());
-  EXPECT_EQ(access.RoleOfCookie(ComeBy(&access, second)), Role::kOperator);
+  EXPECT_EQ(RoleOf(access, ComeBy(&access, second)), Role::kOperator);
 }
 
 TEST(AccessTest, WhoOpenedTheStudioEndsTheSharing) {
@@ -264,12 +271,12 @@ TEST(AccessTest, WhoOpenedTheStudioEndsTheSharing) {
   const std::string viewer = ComeBy(&access, viewers);
   for (const std::string& other : {guest, viewer, std::string(), std::string("x=y")}) {
     EXPECT_FALSE(access.EndSharing(other)) << other;
-    EXPECT_EQ(access.RoleOfCookie(guest), Role::kOperator);
+    EXPECT_EQ(RoleOf(access, guest), Role::kOperator);
   }
   EXPECT_TRUE(access.EndSharing(host));
-  EXPECT_EQ(access.RoleOfCookie(host), Role::kOperator);
-  EXPECT_FALSE(access.RoleOfCookie(guest));
-  EXPECT_FALSE(access.RoleOfCookie(viewer));
+  EXPECT_EQ(RoleOf(access, host), Role::kOperator);
+  EXPECT_FALSE(access.FindVisitor(guest));
+  EXPECT_FALSE(access.FindVisitor(viewer));
   for (const std::string& old : {invitation, unused, viewers}) {
     EXPECT_FALSE(access.Admit(old, "")) << "the link is void";
   }
@@ -289,25 +296,54 @@ TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
   const std::string token = access.token(Role::kOperator);
   const std::string cookie = ComeBy(&access, token);
   EXPECT_EQ(ComeBy(&access, access.token(Role::kViewer), cookie), cookie);
-  EXPECT_EQ(access.RoleOfCookie(cookie), Role::kViewer);
+  EXPECT_EQ(RoleOf(access, cookie), Role::kViewer);
   ComeBy(&access, token, cookie);
-  EXPECT_EQ(access.RoleOfCookie(cookie), Role::kOperator);
+  EXPECT_EQ(RoleOf(access, cookie), Role::kOperator);
 }
 
-TEST(AccessTest, ManyWhoLookOnDriveNobodyOutWhoSteers) {
+TEST(AccessTest, OwnerIsTheBrowserOfTheFirstOperatorsLink) {
+  Access access({}, kPort, false);
+  const std::string owner = ComeBy(&access, access.token(Role::kOperator));
+  const std::string guest = ComeBy(&access, access.MakeInvitation(Role::kOperator));
+  const std::string viewer = ComeBy(&access, access.token(Role::kViewer));
+  EXPECT_TRUE(access.FindVisitor(owner)->is_owner);
+  EXPECT_STREQ(ToString(*access.FindVisitor(owner)), "owner");
+  EXPECT_FALSE(access.FindVisitor(guest)->is_owner);
+  EXPECT_STREQ(ToString(*access.FindVisitor(guest)), "operator");
+  EXPECT_FALSE(access.FindVisitor(viewer)->is_owner);
+  Access after({}, kPort, false, access.Keep());
+  EXPECT_TRUE(after.FindVisitor(owner)->is_owner) << "also after the next start";
+  EXPECT_FALSE(after.FindVisitor(guest)->is_owner);
+}
+
+TEST(AccessTest, QuotasAreSharedByAllViewersAndByNobodyElse) {
+  Access access({}, kPort, false);
+  const auto link_of = [&access](const std::string& token) {
+    return access.FindVisitor(ComeBy(&access, token))->link();
+  };
+  const std::uint32_t viewers = link_of(access.token(Role::kViewer));
+  EXPECT_EQ(link_of(access.token(Role::kViewer)), viewers);
+  const std::set<std::uint32_t> all{viewers, link_of(access.token(Role::kOperator)),
+                                    link_of(access.token(Role::kParticipant)),
+                                    link_of(access.MakeInvitation(Role::kOperator))};
+  EXPECT_EQ(all.size(), 4u);
+}
+
+TEST(AccessTest, ManyWhoLookOnDriveNobodyElseOut) {
   Access access({}, kPort, false);
   const std::string steers = ComeBy(&access, access.token(Role::kOperator));
+  const std::string guest = ComeBy(&access, access.MakeInvitation(Role::kOperator));
   ::testing::internal::CaptureStderr();
-  for (std::size_t i = 0; i < 3 * Access::kMaxBrowsers; ++i) {
+  for (std::size_t i = 0; i < 3 * Access::kMaxLinks; ++i) {
     ComeBy(&access, access.token(Role::kViewer));
     (void)access.MakeInvitation(Role::kOperator);
   }
   const std::string warnings = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(warnings.find("the oldest of 64 links"), std::string::npos) << warnings;
-  EXPECT_NE(warnings.find("the oldest of 64 browsers"), std::string::npos) << warnings;
-  EXPECT_EQ(access.RoleOfCookie(steers), Role::kOperator);
+  EXPECT_EQ(RoleOf(access, steers), Role::kOperator);
+  EXPECT_EQ(RoleOf(access, guest), Role::kOperator);
   EXPECT_EQ(ComeBy(&access, access.token(Role::kOperator), steers), steers);
-  EXPECT_LE(access.Keep().browsers.size(), Access::kMaxBrowsers);
+  EXPECT_LE(access.Keep().browsers.size(), Access::kMaxViewers + 2);
   EXPECT_LE(access.Keep().links.size(), Access::kMaxLinks);
 }
 
@@ -315,20 +351,20 @@ TEST(AccessTest, CookieGivesItsRole) {
   for (const Role role : kRoles) {
     Access access({}, kPort, false);
     const std::string session = ValueOf(ComeBy(&access, access.token(role)));
-    EXPECT_EQ(access.RoleOfCookie(HeaderWith(session)), role);
-    EXPECT_EQ(access.RoleOfCookie("theme=dark; " + HeaderWith(session) + "; x=y"), role);
-    EXPECT_EQ(access.RoleOfCookie("x" + HeaderWith(session)), std::nullopt);
-    EXPECT_EQ(access.RoleOfCookie(HeaderWith(session + "A")), std::nullopt);
-    EXPECT_EQ(access.RoleOfCookie(session), std::nullopt);
-    EXPECT_EQ(access.RoleOfCookie(""), std::nullopt);
-    EXPECT_EQ(access.RoleOfCookie(HeaderWith("")), std::nullopt);
+    EXPECT_EQ(RoleOf(access, HeaderWith(session)), role);
+    EXPECT_EQ(RoleOf(access, "theme=dark; " + HeaderWith(session) + "; x=y"), role);
+    EXPECT_EQ(RoleOf(access, "x" + HeaderWith(session)), std::nullopt);
+    EXPECT_EQ(RoleOf(access, HeaderWith(session + "A")), std::nullopt);
+    EXPECT_EQ(RoleOf(access, session), std::nullopt);
+    EXPECT_EQ(RoleOf(access, ""), std::nullopt);
+    EXPECT_EQ(RoleOf(access, HeaderWith("")), std::nullopt);
   }
 }
 
 TEST(AccessTest, TokenIsNoSession) {  // a link that was looked over a shoulder once is not a cookie
   Access access({}, kPort, false);
   for (const Role role : {Role::kOperator, Role::kViewer}) {
-    EXPECT_EQ(access.RoleOfCookie(HeaderWith(access.token(role))), std::nullopt);
+    EXPECT_EQ(RoleOf(access, HeaderWith(access.token(role))), std::nullopt);
     const std::string session = ValueOf(ComeBy(&access, access.token(role)));
     EXPECT_FALSE(access.Admit(session, "").has_value());
   }
@@ -338,7 +374,7 @@ TEST(AccessTest, SecretsOfOneServerAreNoneOfAnother) {
   Access one({}, kPort, false);
   Access other({}, kPort, false);
   EXPECT_FALSE(other.Admit(one.token(Role::kOperator), "").has_value());
-  EXPECT_EQ(other.RoleOfCookie(ComeBy(&one, one.token(Role::kOperator))), std::nullopt);
+  EXPECT_EQ(RoleOf(other, ComeBy(&one, one.token(Role::kOperator))), std::nullopt);
 }
 
 TEST(AccessTest, CookiesOfTwoServersOnOneHostDoNotMeet) {  // browsers tell no ports apart
@@ -347,8 +383,8 @@ TEST(AccessTest, CookiesOfTwoServersOnOneHostDoNotMeet) {  // browsers tell no p
   EXPECT_NE(one.cookie_name(), other.cookie_name());
   const std::string both =
       ComeBy(&one, one.token(Role::kOperator)) + "; " + ComeBy(&other, other.token(Role::kViewer));
-  EXPECT_EQ(one.RoleOfCookie(both), Role::kOperator);
-  EXPECT_EQ(other.RoleOfCookie(both), Role::kViewer);
+  EXPECT_EQ(RoleOf(one, both), Role::kOperator);
+  EXPECT_EQ(RoleOf(other, both), Role::kViewer);
 }
 
 TEST(AccessTest, CookieIsOutOfReachOfScriptsAndOtherSites) {
@@ -381,11 +417,11 @@ TEST_F(KeptAccessTest, NextStartKnowsLinksAndBrowsersOfTheOneBefore) {
   ASSERT_TRUE(kept.has_value()) << kept.error().ToString();
   Access after({}, kPort, false, *kept);
   EXPECT_EQ(after.token(Role::kOperator), before.token(Role::kOperator));
-  EXPECT_EQ(after.RoleOfCookie(steers), Role::kOperator);
-  EXPECT_EQ(after.RoleOfCookie(looks_on), Role::kViewer);
+  EXPECT_EQ(RoleOf(after, steers), Role::kOperator);
+  EXPECT_EQ(RoleOf(after, looks_on), Role::kViewer);
   EXPECT_EQ(ComeBy(&after, after.token(Role::kOperator), steers), steers);
   EXPECT_FALSE(after.Admit(after.token(Role::kOperator), "").has_value());
-  EXPECT_EQ(after.RoleOfCookie(ComeBy(&after, unused)), Role::kOperator);
+  EXPECT_EQ(RoleOf(after, ComeBy(&after, unused)), Role::kOperator);
 }
 
 TEST_F(KeptAccessTest, CountsAtItsOwnPortOnly) {

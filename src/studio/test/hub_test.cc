@@ -51,7 +51,16 @@ class HubTest : public ::testing::Test {
 
   void TearDown() override { bench_.Stop(); }
 
-  std::string Join(Role role, FakeLink* link) { return hub_.Join(role, link).value_or(""); }
+  /** A client of a browser that has not come before. */
+  std::string Join(Role role, FakeLink* link) {
+    return JoinAs({role, /*is_owner=*/false, ++last_browser_}, link);
+  }
+
+  std::string JoinAs(const Visitor& visitor, FakeLink* link) {
+    return hub_.Join(visitor, link, now_ns_).value_or("");
+  }
+
+  void Leave(const std::string& id) { hub_.Leave(id, now_ns_); }
 
   /** The reply to a command. */
   Json Ask(const std::string& id, FakeLink* link, Json command) {
@@ -102,6 +111,7 @@ class HubTest : public ::testing::Test {
   Workbench bench_;
   Hub hub_;
   std::int64_t now_ns_{1'000'000'000};
+  std::uint32_t last_browser_{100};
   int last_id_{0};
 };
 
@@ -221,15 +231,104 @@ TEST_F(HubTest, LeaseIsGivenReleasedAndAskedFor) {
   EXPECT_TRUE(has(a));
 }
 
-TEST_F(HubTest, LeaseIsFreeWhenItsHolderLeaves) {
+TEST_F(HubTest, LeaseWaitsForTheBrowserThatHasLostItAndIsFreeThen) {
+  FakeLink first;
+  FakeLink second;
+  const Visitor holder{Role::kOperator, false, 1};
+  const std::string a = JoinAs(holder, &first);
+  const std::string b = Join(Role::kOperator, &second);
+  const Json request{{"command", "lease"}, {"action", "request"}};
+  Leave(a);
+  EXPECT_EQ(second.Last("roles")["clients"].size(), 1u);
+  const Json refused = Ask(b, &second, request);
+  EXPECT_TRUE(IsError(refused, "invalid"));
+  EXPECT_EQ(refused["error"]["remedy"], "ask again in 29 s");
+  FakeLink third;
+  Join(Role::kOperator, &third);
+  EXPECT_EQ(third.Last("hello")["has_lease"], false) << "nor has it who comes meanwhile";
+  FakeLink again;
+  const std::string back = JoinAs(holder, &again);
+  EXPECT_EQ(again.Last("hello")["has_lease"], true);
+  Leave(back);
+  now_ns_ += HandLeases::kWaitNs;
+  second.texts.clear();
+  hub_.PublishStatus(now_ns_);
+  EXPECT_FALSE(second.Last("roles").is_null()) << "all are told that it is free";
+  EXPECT_TRUE(Ask(b, &second, request)["ok"]);
+  EXPECT_EQ(second.Last("roles")["clients"][0]["has_lease"], true);
+}
+
+TEST_F(HubTest, LeaseThatWasReleasedWaitsForNobody) {
   FakeLink first;
   FakeLink second;
   const std::string a = Join(Role::kOperator, &first);
   const std::string b = Join(Role::kOperator, &second);
-  hub_.Leave(a);
-  EXPECT_EQ(second.Last("roles")["clients"].size(), 1u);
+  EXPECT_TRUE(Ask(a, &first, {{"command", "lease"}, {"action", "release"}})["ok"]);
+  Leave(a);
   EXPECT_TRUE(Ask(b, &second, {{"command", "lease"}, {"action", "request"}})["ok"]);
   EXPECT_EQ(second.Last("roles")["clients"][0]["has_lease"], true);
+}
+
+TEST_F(HubTest, OwnerTakesEveryHandBackAtOnce) {
+  const Visitor owner{Role::kOperator, true, 1};
+  FakeLink first;
+  FakeLink guest;
+  const std::string a = JoinAs(owner, &first);
+  const std::string b = Join(Role::kOperator, &guest);
+  const Json request{{"command", "lease"}, {"action", "request"}};
+  EXPECT_TRUE(Ask(a, &first, {{"command", "lease"}, {"action", "give"}, {"to", b}})["ok"]);
+  const Json taken = Ask(a, &first, request);
+  EXPECT_TRUE(taken["ok"]);
+  EXPECT_FALSE(taken["result"].contains("waits_for"));
+  EXPECT_EQ(first.Last("roles")["clients"][0]["hands"].size(), 8u);
+  // After the lease has waited long enough a guest has it, until the owner is back.
+  Leave(a);
+  now_ns_ += HandLeases::kWaitNs;
+  EXPECT_TRUE(Ask(b, &guest, request)["ok"]);
+  FakeLink again;
+  const std::string back = JoinAs(owner, &again);
+  EXPECT_EQ(again.Last("hello")["is_owner"], true);
+  EXPECT_EQ(again.Last("hello")["has_lease"], false);
+  EXPECT_TRUE(Ask(back, &again, request)["ok"]);
+  EXPECT_EQ(again.Last("roles")["clients"][1]["has_lease"], true);
+  EXPECT_EQ(Ask(b, &guest, request)["result"]["waits_for"], back) << "a guest has to ask";
+}
+
+TEST_F(HubTest, RecordingsAreTheOwnersWhoeverHasTheLease) {
+  FakeLink guest;
+  const std::string b = Join(Role::kOperator, &guest);
+  EXPECT_EQ(guest.Last("hello")["has_lease"], true);
+  for (const Json& command :
+       {Json{{"command", "delete_recording"}, {"recording", "x"}},
+        Json{{"command", "rename_recording"}, {"recording", "x"}, {"name", "y"}},
+        Json{{"command", "share_recording"}, {"recording", "x"}, {"shared", true}}}) {
+    const Json refused = Ask(b, &guest, command);
+    EXPECT_TRUE(IsError(refused, "invalid")) << command;
+    EXPECT_EQ(refused["error"]["remedy"], "ask the user who started this studio");
+  }
+  FakeLink first;
+  const std::string a = JoinAs({Role::kOperator, true, 1}, &first);
+  EXPECT_TRUE(
+      IsError(Ask(a, &first, {{"command", "delete_recording"}, {"recording", "x"}}), "not-found"));
+}
+
+TEST_F(HubTest, DeviceIsAnIndexOfTheHostsListAndEveryOtherOneIsAnsweredAlike) {
+  FakeLink link;
+  const std::string a = JoinAs({Role::kOperator, true, 1}, &link);
+  const auto use = [&](const Json& device) {
+    return Ask(a, &link, {{"command", "use"}, {"device", device}})["error"];
+  };
+  const Json missing = use(100);
+  EXPECT_EQ(missing["code"], "not-found");
+  EXPECT_EQ(use(1000), missing);
+  EXPECT_EQ(use(4294967294), missing);
+  // An address is none, whether there is such a file or not.
+  const Json malformed = use("plugin:/proc/self/exe");
+  EXPECT_EQ(malformed["code"], "invalid");
+  for (const Json& other : {Json("plugin:/no/such/file"), Json("pointer"), Json("network:0.0.0.0"),
+                            Json(-1), Json(0.5), Json(nullptr), Json::array({0})}) {
+    EXPECT_EQ(use(other), malformed) << other;
+  }
 }
 
 TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
@@ -267,9 +366,10 @@ TEST_F(HubTest, TwoOperatorsHaveOneHandEach) {  // N11
   FakeLink viewer;
   const std::string v = Join(Role::kViewer, &viewer);
   EXPECT_TRUE(IsError(ask(v, &viewer, "ask_part", {{"hand", 0}}), "invalid"));
-  hub_.Leave(v);
+  Leave(v);
   EXPECT_EQ(ask(b, &second, "take", {{"hand", 1}, {"occurrence", 1}})["ok"], true);
-  hub_.Leave(a);
+  Leave(a);
+  now_ns_ += HandLeases::kWaitNs;
   EXPECT_EQ(ask(b, &second, "lease", {{"action", "request"}})["ok"], true);
   EXPECT_EQ(second.Last("roles")["clients"][0]["hands"], Json::array({0, 1, 2, 3, 4, 5, 6, 7}));
 }
@@ -368,19 +468,30 @@ TEST_F(HubTest, NotesArePinnedToPartsAndSeenByAll) {
   EXPECT_TRUE(IsError(add(a, &first, 1, "too many"), "out-of-resource"));
 }
 
-TEST_F(HubTest, OneClientTooManyIsRefused) {
-  std::vector<FakeLink> links(Hub::kMaxClients + 1);
-  std::set<std::string> ids;
-  for (std::size_t i = 0; i < Hub::kMaxClients; ++i) {
-    ids.insert(Join(Role::kViewer, &links[i]));
-  }
-  EXPECT_EQ(ids.size(), Hub::kMaxClients);
-  const auto last = hub_.Join(Role::kOperator, &links.back());
-  ASSERT_FALSE(last);
-  EXPECT_EQ(last.error().code, ErrorCode::kOutOfResource);
-  EXPECT_TRUE(links.back().texts.empty());
-  hub_.Leave(*ids.begin());
-  EXPECT_TRUE(hub_.Join(Role::kOperator, &links.back()));
+TEST_F(HubTest, PagesOfALinkAreLimitedAndPlacesAreKeptForTheOwner) {
+  std::vector<FakeLink> links(Hub::kMaxClients + 2);
+  std::size_t count = 0;
+  const auto fill = [&](const Visitor& visitor) {
+    std::size_t joined = 0;
+    while (const auto id = hub_.Join(visitor, &links[count], now_ns_)) {
+      ++count;
+      ++joined;
+    }
+    EXPECT_TRUE(links[count].texts.empty()) << "who is refused is told nothing";
+    return joined;
+  };
+  EXPECT_EQ(fill({Role::kViewer, false, 1}), Hub::kMaxViewingClients);
+  EXPECT_EQ(fill({Role::kViewer, false, 2}), 0u) << "all viewers have one link";
+  EXPECT_EQ(fill({Role::kOperator, false, 3}), Hub::kMaxClientsOfLink);
+  EXPECT_EQ(fill({Role::kOperator, false, 4}), Hub::kMaxClientsOfLink);
+  EXPECT_EQ(fill({Role::kOperator, false, 5}), 0u);
+  EXPECT_EQ(fill({Role::kOperator, true, 6}), Hub::kKeptForOwner);
+  EXPECT_EQ(count, Hub::kMaxClients);
+  const auto refused = hub_.Join({Role::kViewer, false, 1}, &links[count], now_ns_);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kOutOfResource);
+  Leave("c1");
+  EXPECT_EQ(fill({Role::kViewer, false, 1}), 1u);
 }
 
 TEST_F(HubTest, UnknownCommandIsAnsweredWithAnError) {
@@ -452,7 +563,7 @@ TEST_F(HubTest, FieldsOfTheWrongTypeAreNamed) {
   EXPECT_TRUE(names({{"command", "release"}, {"hand", "left"}}, "hand"));
   EXPECT_TRUE(names({{"command", "use"}, {"hand", 0}}, "device"));
   for (const Json& bad : {Json(-1), Json(1e300), Json("1"), Json(nullptr)}) {
-    EXPECT_TRUE(names({{"command", "use"}, {"device", "x"}, {"scale", bad}}, "scale")) << bad;
+    EXPECT_TRUE(names({{"command", "use"}, {"device", 1}, {"scale", bad}}, "scale")) << bad;
   }
   EXPECT_TRUE(names({{"command", "hands"}}, "count"));
   EXPECT_TRUE(names({{"command", "forces"}, {"off", "yes"}}, "off"));
@@ -581,11 +692,11 @@ TEST_F(HubTest, FramesThatAreNoneEndTheClient) {
 TEST_F(HubTest, WhoeverHasLeftIsNotHeard) {
   FakeLink link;
   const std::string id = Join(Role::kOperator, &link);
-  hub_.Leave(id);
+  Leave(id);
   link.texts.clear();
   hub_.OnText(id, R"({"id": 1, "command": "forces", "off": true})", now_ns_);
   hub_.OnBinary(id, "nonsense");
-  hub_.Leave(id);
+  Leave(id);
   EXPECT_TRUE(link.texts.empty());
   EXPECT_TRUE(link.reason.empty());
   EXPECT_FALSE(bench_.live().forces_off());

@@ -103,7 +103,7 @@ class PathCommandTest : public ::testing::Test {
  protected:
   PathCommandTest() : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
-    viewer_ = hub_.Join(Role::kViewer, &texts_).value_or("");
+    viewer_ = hub_.Join({Role::kViewer, false, 1}, &texts_, now_ns_).value_or("");
   }
 
   void TearDown() override { bench_.Stop(); }

@@ -160,6 +160,46 @@ const Json* FindNamed(const char* list, const std::string& name) {
   return nullptr;
 }
 
+/** A value of a type. */
+Json MakeValue(const std::string& type) {
+  const std::string first = AlternativesOf(type)[0];
+  if (first.starts_with('\'')) {
+    return first.substr(1, first.size() - 2);
+  }
+  if (first.ends_with(']')) {
+    const std::size_t bracket = first.find('[');
+    const bool is_list = first[bracket + 1] == ']';
+    const std::size_t count = is_list ? 1 : static_cast<std::size_t>(first[bracket + 1] - '0');
+    return Json(std::vector<Json>(count, MakeValue(first.substr(0, bracket))));
+  }
+  static const std::map<std::string, Json> primitives{
+      {"text", "x"}, {"flag", true}, {"number", 0},    {"whole", 0},
+      {"index", 0},  {"hand", 0},    {"null", nullptr}};
+  if (const auto found = primitives.find(first); found != primitives.end()) {
+    return found->second;
+  }
+  const Json& told = Schema()["types"][first];
+  if (!told.is_object()) {
+    return MakeValue(TypeOf(told));
+  }
+  Json object = Json::object();
+  for (const auto& [name, field] : told["fields"].items()) {
+    object[name.ends_with('?') ? name.substr(0, name.size() - 1) : name] = MakeValue(TypeOf(field));
+  }
+  return object;
+}
+
+CommandExample MakeExample(const Json& told, const Json& message, const std::string& right) {
+  CommandExample example{told["name"], right, message, {}};
+  const Json fields = told.value("fields", Json::object());
+  for (const auto& [key, field] : fields.items()) {
+    const std::string name = key.ends_with('?') ? key.substr(0, key.size() - 1) : key;
+    example.fields.push_back(name);
+    example.message[name] = MakeValue(TypeOf(field));
+  }
+  return example;
+}
+
 std::set<std::string> NamesIn(const char* list) {
   std::set<std::string> names;
   for (const Json& one : Schema()[list]) {
@@ -205,6 +245,18 @@ std::string FindResultFault(const std::string& command, const Json& result) {
   const std::string fault =
       told->contains("result") ? FindFault((*told)["result"], result) : FindObjectFault({}, result);
   return fault.empty() ? "" : command + fault;
+}
+
+std::vector<CommandExample> MakeCommandExamples() {
+  std::vector<CommandExample> examples;
+  for (const Json& command : Schema()["commands"]) {
+    examples.push_back(MakeExample(command, {{"command", command["name"]}}, command["right"]));
+  }
+  for (const Json& action : Schema()["study_actions"]) {
+    examples.push_back(
+        MakeExample(action, {{"command", "study"}, {"action", action["name"]}}, "anybody"));
+  }
+  return examples;
 }
 
 std::set<std::string> EventNames() {

@@ -2,6 +2,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "studio/workbench.h"
 
@@ -14,6 +15,18 @@ namespace hvas::studio::testing {
 [[nodiscard]] std::string FindEventFault(const Json& event);
 /** @param result  Of the answer to a command that was obeyed. */
 [[nodiscard]] std::string FindResultFault(const std::string& command, const Json& result);
+
+/** A command of the schema, or an action of the command "study", with a value of the right type in
+ each of its fields. */
+struct CommandExample {
+  std::string name;
+  std::string right;
+  Json message;                     ///< Has no id.
+  std::vector<std::string> fields;  ///< Names of the fields that can be given.
+};
+
+/** One for each command, and for each action of a study. */
+[[nodiscard]] std::vector<CommandExample> MakeCommandExamples();
 
 /** Names of all events, or of all commands. */
 [[nodiscard]] std::set<std::string> EventNames();

@@ -44,8 +44,8 @@ class ProtocolTest : public ::testing::Test {
   ProtocolTest()
       : bench_(testing::SmallBench(log_.clock())), hub_(&bench_, {{"peg", "Peg", "", "peg.step"}}) {
     bench_.on_event = [this](Json event) { log_.Add(std::move(event)); };
-    steers_ = *hub_.Join(Role::kOperator, &link_);
-    (void)*hub_.Join(Role::kOperator, &other_link_);
+    steers_ = *hub_.Join({Role::kOperator, true, 1}, &link_, now_ns_);
+    (void)*hub_.Join({Role::kOperator, false, 2}, &other_link_, now_ns_);
   }
 
   void TearDown() override { bench_.Stop(); }
@@ -180,7 +180,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
 
   EXPECT_FALSE(Do({{"command", "hands"}, {"count", 2}}).is_null());
   PumpUntil("hands");
-  EXPECT_FALSE(Do({{"command", "use"}, {"hand", 1}, {"device", "pointer"}}).is_null());
+  EXPECT_FALSE(Do({{"command", "use"}, {"hand", 1}, {"device", 0}}).is_null());
   PumpUntil("hands");
   EXPECT_FALSE(Do({{"command", "devices"}}).is_null());
   PumpUntil("devices");
@@ -190,7 +190,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "ask_part"}, {"hand", 0}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
   ASSERT_TRUE(log_.AwaitTrue([this] {
-    hub_.PublishStatus();
+    hub_.PublishStatus(now_ns_);
     return link_.events.count("status") > 0;
   }));
   EXPECT_FALSE(Do({{"command", "status"}}).is_null());

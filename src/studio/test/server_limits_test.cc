@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "base/test/await_true.h"
+#include "studio/connection_table.h"
 #include "studio/test/server_fixture.h"
 
 namespace hvas::studio {
@@ -151,28 +152,61 @@ TEST_F(ServerTest, FramesThatAreNoneEndTheSocketAndFreeTheLease) {
     return false;
   };
   EXPECT_TRUE(is_close());
-  // It does not answer the close, and steers no more all the same.
+  // It does not answer the close, and steers no more all the same: its browser has the lease again.
   const auto next = Join(Role::kOperator);
   EXPECT_TRUE(AwaitEvent(next.get(), "hello")["has_lease"]);
 }
 
-TEST_F(ServerTest, OneClientTooManyIsTurnedAway) {
+TEST_F(ServerTest, SocketsOfViewersLeaveRoomForTheOwner) {
+  (void)CookieOf(Role::kOperator);
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (std::size_t i = 0; i < Hub::kMaxClients; ++i) {
+  for (std::size_t i = 0; i < Hub::kMaxViewingClients; ++i) {
     clients.push_back(Join(Role::kViewer));
     EXPECT_FALSE(AwaitEvent(clients.back().get(), "hello").is_null());
   }
-  const auto last = Join(Role::kOperator);
-  const auto message = last->ReadMessage();
-  ASSERT_TRUE(message);
-  EXPECT_EQ(message->opcode, Message::kClose);
-  EXPECT_NE(message->bytes.find("16 clients"), std::string::npos);
+  for (int i = 0; i < 20; ++i) {
+    const auto last = Join(Role::kViewer);
+    const auto message = last->ReadMessage();
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->opcode, Message::kClose);
+    EXPECT_NE(message->bytes.find("as many pages are open"), std::string::npos);
+  }
+  EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
   clients.pop_back();
   EXPECT_FALSE(Await(clients.front().get(), [](const Json& json) {
                  return json.value("event", "") == "roles" &&
-                        json["clients"].size() == Hub::kMaxClients - 1;
+                        json["clients"].size() == Hub::kMaxViewingClients - 1;
                }).is_null());
+  EXPECT_FALSE(AwaitEvent(Join(Role::kViewer).get(), "hello").is_null());
+}
+
+TEST_F(ServerTest, IdleConnectionsOfViewersLeaveRoomForTheOwner) {
+  const std::string owner = CookieOf(Role::kOperator);
+  const Headers known{{"Host", host()}, {"Cookie", CookieOf(Role::kViewer)}};
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (std::size_t i = 0; i < 2 * ConnectionTable::kMostOfViewers; ++i) {
+    idle.push_back(std::make_unique<RawClient>(server_->port()));
+    EXPECT_EQ(idle.back()->Ask({"GET", "/api/scene", known, ""}).status, 404);
+  }
+  EXPECT_EQ(Get("/api/scene", {{"Cookie", owner}}).status, 404);
   EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
+  EXPECT_TRUE(idle.front()->IsClosed()) << "their own oldest one made room";
+}
+
+TEST_F(ServerTest, LinkSendsOneFileAtATimeAndTheNextOneTakesItsPlace) {
+  const std::string cookie = CookieOf(Role::kOperator);
+  const std::string start = "POST /api/upload?name=a.stp HTTP/1.1\r\nHost: " + host() +
+                            "\r\nOrigin: " + origin() + "\r\nCookie: " + cookie + "\r\n";
+  RawClient slow(server_->port());
+  slow.Send(start + "Content-Length: 9000\r\n\r\n" + std::string(10, 'x'));
+  EXPECT_TRUE(hvas::testing::AwaitTrue([this] { return CountFiles() > 0; }));
+  EXPECT_EQ(Post("/api/upload?name=b.stp", "x", {{"Cookie", cookie}}).status, 429);
+  slow.Send(std::string(8990, 'x'));
+  EXPECT_EQ(slow.ReadReply().status, 200);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(Post("/api/upload?name=c.stp", "x", {{"Cookie", cookie}}).status, 200);
+    EXPECT_EQ(CountFiles(), 2u) << "a folder and a file";
+  }
 }
 
 TEST_F(ServerTest, ClientThatNeverReadsIsLetGoAndHoldsUpNobody) {
@@ -288,8 +322,8 @@ TEST_F(ImpatientServerTest, WhoeverIsSilentIsLetGo) {
   EXPECT_TRUE(idle.IsClosed());
 }
 
-TEST_F(ImpatientServerTest, SocketThatDoesNotAnswerIsLetGoAndItsLeaseIsFree) {  // a headset asleep
-  const auto asleep = Join(Role::kOperator);
+TEST_F(ImpatientServerTest, SocketThatDoesNotAnswerIsLetGoAndItsBrowserHasTheLease) {
+  const auto asleep = Join(Role::kOperator);  // a headset
   EXPECT_TRUE(AwaitEvent(asleep.get(), "hello")["has_lease"]);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   for (int i = 0; i < 100; ++i) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class ServerRecordingsTest : public ServerTest {
   }
 
   Reply GetKnown(const std::string& target, Headers more = {}) {
-    more.push_back({"Cookie", CookieOf(Role::kViewer)});
+    more.push_back({"Cookie", CookieOf(Role::kOperator)});
     return Get(target, std::move(more));
   }
 
@@ -91,6 +92,53 @@ TEST_F(ServerRecordingsTest, NamesWithSpacesAndLettersOfAllLanguagesAreFound) {
   EXPECT_EQ(GetKnown("/api/recording/pump%202%20%zz").status, 404);
   EXPECT_EQ(GetKnown("/api/recording/..%2f..%2fetc%2fpasswd/file").status, 404);
   std::filesystem::remove(folder_of_recordings_ / "pump 2 \xc3\xa4.hvasrec");
+}
+
+TEST_F(ServerRecordingsTest, ViewersGetWhatTheOwnerHasSharedWhileItsProductIsOpen) {
+  const auto owner = JoinAndOpen();
+  const std::string digest = bench_->recordings().FindDigest();
+  ASSERT_FALSE(digest.empty());
+  Record("own.hvasrec", {{"product", "a"}, {kProductDigestMeta, digest}}, "{}");
+  Record("other.hvasrec", {{"product", "b"}, {kProductDigestMeta, "another"}}, "{}");
+  const auto list = [this](Role role) {
+    std::set<std::string> ids;
+    const Json told = Json::parse(Get("/api/recordings", {{"Cookie", CookieOf(role)}}).body);
+    for (const Json& entry : told["recordings"]) {
+      ids.insert(entry["id"].get<std::string>());
+    }
+    return ids;
+  };
+  const auto share = [&](const std::string& id, bool is_shared) {
+    EXPECT_TRUE(Command(owner.get(), {{"id", 5},
+                                      {"command", "share_recording"},
+                                      {"recording", id},
+                                      {"shared", is_shared}})["ok"]);
+    EXPECT_FALSE(AwaitEvent(owner.get(), "recordings").is_null());
+  };
+  const auto status = [this](const std::string& what) {
+    return Get("/api/recording/" + what, {{"Cookie", CookieOf(Role::kViewer)}}).status;
+  };
+  EXPECT_EQ(list(Role::kOperator), (std::set<std::string>{"other", "own"}));
+  EXPECT_EQ(list(Role::kViewer), std::set<std::string>());
+  EXPECT_EQ(status("own/file"), 404);
+  share("own", true);
+  share("other", true);  // of another product: refused
+  EXPECT_EQ(list(Role::kViewer), std::set<std::string>{"own"});
+  EXPECT_EQ(status("own"), 200);
+  EXPECT_EQ(status("own/file"), 200);
+  EXPECT_EQ(status("other"), 404);
+  EXPECT_EQ(status("other/file"), 404);
+  // What is shared is so after the next start, and with its product alone.
+  RecordingShelf after(folder_of_recordings_);
+  EXPECT_TRUE(after.IsShared("own", digest));
+  EXPECT_FALSE(after.IsShared("own", "another"));
+  EXPECT_FALSE(after.IsShared("other", "another"));
+  share("own", false);
+  EXPECT_EQ(list(Role::kViewer), std::set<std::string>());
+  EXPECT_EQ(status("own/file"), 404);
+  for (const char* name : {"own.hvasrec", "other.hvasrec", "shared.json"}) {
+    std::filesystem::remove(folder_of_recordings_ / name);
+  }
 }
 
 TEST_F(ServerRecordingsTest, ConnectionIsClosedForThoseWhoAskForIt) {

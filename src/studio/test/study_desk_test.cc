@@ -121,8 +121,8 @@ class StudyDeskTest : public ::testing::Test {
   }
 
   void Join() {
-    experimenter_ = *hub_.Join(Role::kOperator, &experimenter_link_);
-    participant_ = *hub_.Join(Role::kParticipant, &participant_link_);
+    experimenter_ = *hub_.Join({Role::kOperator, true, 1}, &experimenter_link_, 0);
+    participant_ = *hub_.Join({Role::kParticipant, false, 2}, &participant_link_, 0);
   }
 
   /** Passes on what the bench tells until an event has come, as the server does. */
@@ -208,7 +208,7 @@ class StudyDeskTest : public ::testing::Test {
 TEST_F(StudyDeskTest, NobodyGivesTheParticipantsHandAwayOrTakesIt) {
   Join();
   DeskLink other_link;
-  const std::string other = *hub_.Join(Role::kOperator, &other_link);
+  const std::string other = *hub_.Join({Role::kOperator, false, 3}, &other_link, 0);
   const auto lease = [this](const std::string& id, DeskLink* link, Json command) {
     command["command"] = "lease";
     command["id"] = 7;
@@ -231,7 +231,7 @@ TEST_F(StudyDeskTest, NobodyGivesTheParticipantsHandAwayOrTakesIt) {
   }
   EXPECT_EQ(Json::parse(other_link.texts.front())["event"], "hello");
   DeskLink late_link;
-  (void)*hub_.Join(Role::kOperator, &late_link);
+  (void)*hub_.Join({Role::kOperator, false, 4}, &late_link, 0);
   for (const std::string& text : late_link.texts) {
     const Json json = Json::parse(text);
     if (json["event"] == "roles") {
@@ -474,7 +474,7 @@ TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   Do(participant_, {{"action", "ready"}});  // a trial of one second
   PumpUntil("trial_begun");
   AwaitElapsed(1);
-  hub_.PublishStatus();
+  hub_.PublishStatus(0);
   PumpUntil("trial_over");
   const Json done = desk_->MakeState(Role::kOperator, now_ns_)["done"];
   ASSERT_EQ(done.size(), 2U);

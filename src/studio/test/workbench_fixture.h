@@ -145,12 +145,22 @@ class WorkbenchFixture : public ::testing::Test {
   }
 
   /** Waits until a hand has this device. */
-  bool AwaitDevice(std::size_t hand, const std::string& address, std::size_t start) {
+  /** Index of the first device of the list whose address begins so. */
+  [[nodiscard]] std::size_t FindDevice(const std::string& address) {
+    const auto& entries = bench_.hands().devices().entries();
+    const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) {
+      return entry.address.starts_with(address);
+    });
+    EXPECT_NE(found, entries.end()) << address;
+    return static_cast<std::size_t>(found - entries.begin());
+  }
+
+  bool AwaitDevice(std::size_t hand, std::size_t device, std::size_t start) {
     return log_
         .Await(
             [&](const Json& event) {
               return event["event"] == "hands" && hand < event["hands"].size() &&
-                     event["hands"][hand]["device"]["address"] == address;
+                     event["hands"][hand]["device"]["index"] == device;
             },
             start)
         .has_value();

@@ -87,7 +87,7 @@ TEST_F(WorkbenchHandsTest, SecondHandDoesWhatTheFirstOneDoes) {  // N11: two han
   EXPECT_FALSE(bench_.hands().SetCount(HandRack::kMaxHands + 1));
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.hands().SetCount(2));
-  ASSERT_TRUE(AwaitDevice(1, HandRack::kPointer, start));
+  ASSERT_TRUE(AwaitDevice(1, DeviceList::kPointer, start));
   hand_ = 1;
   TakePeg();
   EXPECT_FALSE(bench_.hands().Take(0, OccurrenceId(kPeg)));  // it is in the other hand
@@ -108,7 +108,7 @@ TEST_F(WorkbenchHandsTest, PartGoesFromOneHandIntoTheOtherBeforeItFalls) {
   OpenPeg();
   const std::size_t start = log_.size();
   ASSERT_TRUE(bench_.hands().SetCount(2));
-  ASSERT_TRUE(AwaitDevice(1, HandRack::kPointer, start));
+  ASSERT_TRUE(AwaitDevice(1, DeviceList::kPointer, start));
   EXPECT_FALSE(bench_.hands().HandOver(0, 1));  // nothing is in it
   TakePeg();
   EXPECT_FALSE(bench_.hands().HandOver(0, 0));
@@ -131,10 +131,10 @@ TEST_F(WorkbenchHandsTest, PartGoesFromOneHandIntoTheOtherBeforeItFalls) {
 
 TEST_F(WorkbenchHandsTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   OpenPeg();
-  constexpr const char* kAddress = "emulated:openhaptics:touch_x";
+  const std::size_t touch = FindDevice("emulated:openhaptics:touch_x");
   const std::size_t start = log_.size();
-  ASSERT_TRUE(bench_.hands().UseDevice(0, kAddress, 0));
-  ASSERT_TRUE(AwaitDevice(0, kAddress, start));
+  ASSERT_TRUE(bench_.hands().UseDevice(0, touch, 0));
+  ASSERT_TRUE(AwaitDevice(0, touch, start));
   EXPECT_TRUE(
       log_.AwaitTrue([this] { return bench_.hands().Describe()[0]["condition"] == "ready"; }));
   const Json hand = bench_.hands().Describe()[0];
@@ -147,26 +147,45 @@ TEST_F(WorkbenchHandsTest, EmulatedDeviceInsertsThePegByThePointer) {  // N3
   ASSERT_FALSE(HasFatalFailure());
   ReleasePeg();
   EXPECT_TRUE(AwaitPlacement(kPeg, Placement::kPlaced));
-  ASSERT_TRUE(bench_.hands().UseDevice(0, HandRack::kPointer, 0));
-  EXPECT_TRUE(AwaitDevice(0, HandRack::kPointer, start));
+  ASSERT_TRUE(bench_.hands().UseDevice(0, DeviceList::kPointer, 0));
+  EXPECT_TRUE(AwaitDevice(0, DeviceList::kPointer, start));
 }
 
 TEST_F(WorkbenchHandsTest, DeviceThatCannotBeUsedIsToldOfAndLeavesTheHandAsItWas) {
-  const auto fails = [this](std::size_t hand, const std::string& address) {
+  const auto fails = [this](std::size_t hand, std::size_t device) {
     const std::size_t start = log_.size();
-    EXPECT_TRUE(bench_.hands().UseDevice(hand, address, 0));
+    EXPECT_TRUE(bench_.hands().UseDevice(hand, device, 0));
     const auto failed = log_.Await("failed", start);
-    return failed && (*failed)["file"] == address && !(*failed)["error"]["remedy"].empty();
+    return failed && (*failed)["file"] == bench_.hands().devices().entries()[device].name &&
+           !(*failed)["error"]["remedy"].empty();
   };
-  EXPECT_TRUE(fails(0, "nonsense"));
-  EXPECT_TRUE(fails(0, "emulated:openhaptics:nonsense"));
-  EXPECT_TRUE(fails(1, "emulated:openhaptics"));  // there is one hand
-  EXPECT_EQ(bench_.hands().Describe()[0]["device"]["address"], HandRack::kPointer);
+  const std::size_t emulated = FindDevice("emulated:haply");
+  EXPECT_TRUE(fails(0, FindDevice("haply")));  // a real one, with a clock that goes by steps
+  EXPECT_TRUE(fails(1, emulated));             // there is one hand
+  EXPECT_EQ(bench_.hands().Describe()[0]["device"]["index"], DeviceList::kPointer);
   ASSERT_TRUE(bench_.hands().SetCount(2));
   const std::size_t start = log_.size();
-  ASSERT_TRUE(bench_.hands().UseDevice(0, "emulated:haply", 0));
-  ASSERT_TRUE(AwaitDevice(0, "emulated:haply", start));
-  EXPECT_TRUE(fails(1, "emulated:haply"));  // it is in the other one
+  ASSERT_TRUE(bench_.hands().UseDevice(0, emulated, 0));
+  ASSERT_TRUE(AwaitDevice(0, emulated, start));
+  EXPECT_TRUE(fails(1, emulated));  // it is in the other one
+}
+
+TEST_F(WorkbenchHandsTest, DeviceThatTheListDoesNotHaveIsRefused) {
+  for (const std::size_t device :
+       {bench_.hands().devices().entries().size(), std::size_t{1} << 32}) {
+    const auto refused = bench_.hands().UseDevice(0, device, 0);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kNotFound);
+  }
+}
+
+TEST(DeviceListTest, AddressesOfTheHostAreNotShown) {
+  const DeviceList list({"plugin:/opt/secret/device.so", "network:0.0.0.0:4000"});
+  EXPECT_EQ(list.entries()[1].address, "plugin:/opt/secret/device.so");
+  EXPECT_EQ(list.entries()[2].address, "network:0.0.0.0:4000");
+  EXPECT_EQ(list.entries()[1].name, "Device 1 of the command line");
+  EXPECT_EQ(list.entries()[2].name, "Device 2 of the command line");
+  EXPECT_EQ(list.entries()[1].driver, "plugin");
 }
 
 TEST_F(WorkbenchHandsTest, DevicesAreFoundWithoutOpeningThem) {
@@ -177,7 +196,8 @@ TEST_F(WorkbenchHandsTest, DevicesAreFoundWithoutOpeningThem) {
   std::size_t emulated = 0;
   for (const Json& device : (*told)["devices"]) {
     emulated += device["is_emulated"] == true ? 1 : 0;
-    EXPECT_FALSE(device["address"].get<std::string>().empty());
+    EXPECT_FALSE(device.contains("address")) << "a page names a device by its index";
+    EXPECT_GT(device["index"].get<std::size_t>(), DeviceList::kPointer);
     EXPECT_FALSE(device["name"].get<std::string>().empty());
   }
   EXPECT_EQ(emulated, device::KnownProfiles().size());

@@ -3,5 +3,5 @@ import type { HandSetup } from "../protocol/messages";
 import { t } from "./i18n";
 
 export function deviceName({ device }: HandSetup): string {
-  return device.address === kPointer ? t("devices.mouse") : device.name;
+  return device.index === kPointer ? t("devices.mouse") : device.name;
 }

@@ -59,7 +59,7 @@ function DeviceRow({ device }: { device: FoundDevice }) {
       </div>
       <span class="spacer" />
       {hands.map(({ hand, device: inHand }) =>
-        inHand.address === device.address ? (
+        inHand.index === device.index ? (
           <span key={hand} class="badge is-held">
             {t("hands.name", { n: hand + 1 })}
           </span>
@@ -70,7 +70,7 @@ function DeviceRow({ device }: { device: FoundDevice }) {
             class="small-button"
             disabled={!device.is_ready || !leads(hand)}
             aria-label={t("devices.putWhat", { device: device.name, n: hand + 1 })}
-            onClick={() => putInto(hand, device.address)}
+            onClick={() => putInto(hand, device.index)}
           >
             {t("devices.put", { n: hand + 1 })}
           </button>
@@ -84,7 +84,7 @@ function Rows({ devices }: { devices: readonly FoundDevice[] }) {
   return (
     <ul>
       {devices.map((device) => (
-        <DeviceRow key={device.address} device={device} />
+        <DeviceRow key={device.index} device={device} />
       ))}
     </ul>
   );

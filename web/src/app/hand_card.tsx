@@ -15,7 +15,7 @@ import { clientName } from "./people";
 export const leads = (hand: number) => store.link.value === "open" && store.ownHands.value.includes(hand);
 
 /** @param scale  Scene length for one of the device; 0: by their sizes. */
-export function putInto(hand: number, device: string, scale = 0): void {
+export function putInto(hand: number, device: number, scale = 0): void {
   void studio.command({ command: "use", hand, device, scale });
 }
 
@@ -61,7 +61,7 @@ function ScaleField({ setup }: { setup: HandSetup }) {
   const apply = (event: Event) => {
     event.preventDefault();
     if (scale !== null) {
-      putInto(setup.hand, setup.device.address, scale);
+      putInto(setup.hand, setup.device.index, scale);
     }
   };
   return (
@@ -172,7 +172,7 @@ export function HandCard({ setup }: { setup: HandSetup }) {
           <Icon name="warn" size={14} /> {note}
         </p>
       ))}
-      {device.address === kPointer ? null : (
+      {device.index === kPointer ? null : (
         <>
           <ScaleField setup={setup} />
           <button

@@ -3,7 +3,7 @@
 import { useSignal, type Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { RecordingEntry } from "../protocol/messages";
-import { canSteer, store, studio, ui } from "./app_state";
+import { store, studio, ui } from "./app_state";
 import { Dialog, DialogHead } from "./dialog";
 import { dateTime, duration, megabytes, t } from "./i18n";
 import { Icon } from "./icons";
@@ -54,7 +54,7 @@ function DeleteButton({ entry }: { entry: RecordingEntry }) {
       class="icon-button"
       aria-label={t("recs.deleteWhat", { name: entry.name })}
       title={t("recs.delete")}
-      disabled={!canSteer() && studio.recordings.playback.value === null}
+      disabled={!store.isOwner.value}
       onClick={() => (isAsking.value = true)}
     >
       <Icon name="trash" />
@@ -120,6 +120,7 @@ function Row({ entry }: { entry: RecordingEntry }) {
       </td>
       <th scope="row">
         <Name entry={entry} isNaming={isNaming} />
+        {entry.is_shared ? <span class="badge">{t("recs.shared")}</span> : null}
         {entry.is_complete ? null : <span class="badge is-next">{t("recs.incomplete")}</span>}
       </th>
       <td>{entry.product}</td>
@@ -135,10 +136,22 @@ function Row({ entry }: { entry: RecordingEntry }) {
           class="icon-button"
           aria-label={t("recs.renameWhat", { name: entry.name })}
           title={t("recs.rename")}
-          disabled={!canSteer() && studio.recordings.playback.value === null}
+          disabled={!store.isOwner.value}
           onClick={() => (isNaming.value = true)}
         >
           <Icon name="pen" />
+        </button>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label={t("recs.shareWhat", { name: entry.name })}
+          aria-pressed={entry.is_shared}
+          title={t("recs.share")}
+          data-testid={`share-${entry.id}`}
+          disabled={!store.isOwner.value}
+          onClick={() => void studio.recordings.share(entry.id, !entry.is_shared)}
+        >
+          <Icon name="share" />
         </button>
         <a
           class="icon-button"

@@ -66,9 +66,10 @@ function useInvitation(guest: Signal<Guest>): { link: Invitation | null; isDone:
 }
 
 function Guests({ guest }: { guest: Signal<Guest> }) {
+  const possible: readonly Guest[] = store.isOwner.value ? ["viewer", "operator"] : ["viewer"];
   return (
     <div class="segments is-text" role="radiogroup" aria-label={t("share.who")}>
-      {(["viewer", "operator"] as const).map((each) => (
+      {possible.map((each) => (
         <button
           key={each}
           type="button"

@@ -2,14 +2,15 @@
 
 import type { Client, HandSetup } from "../protocol/messages";
 
-export const kPointer = "pointer";
+/** Index of the pointer in the list of devices. */
+export const kPointer = 0;
 
 /** Does a mouse move the hand? An emulated device is held by one as well. */
 export function followsPointer(hands: readonly HandSetup[], hand: number): boolean {
   const setup = hands.find((each) => each.hand === hand);
   return setup === undefined
     ? hand === 0 && hands.length === 0
-    : setup.device.address === kPointer || setup.device.is_emulated;
+    : setup.device.index === kPointer || setup.device.is_emulated;
 }
 
 /** May the mouse of this page move the hand? */

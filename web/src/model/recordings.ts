@@ -140,6 +140,11 @@ export class Recordings {
     return true;
   }
 
+  /** Shares a recording with all who have a link, or no more; the list follows by an event. */
+  async share(id: string, shared: boolean): Promise<void> {
+    await this.studio.command({ command: "share_recording", recording: id, shared });
+  }
+
   async remove(id: string): Promise<void> {
     if ((await this.studio.command({ command: "delete_recording", recording: id })) === null) {
       return;

@@ -154,6 +154,8 @@ export function makeStore() {
   const step = shown("step");
   const link = signal<LinkState>("starting");
   const hasLease = signal(false);
+  /** Whether this browser came first by the first link. */
+  const isOwner = signal(false);
   const client = signal("");
   const clients = signal<readonly Client[]>([]);
   const study = signal<StudyState | null>(null);
@@ -183,6 +185,7 @@ export function makeStore() {
     study,
     client,
     hasLease,
+    isOwner,
     clients,
     /** Who asks this page for control, and of which hands. */
     leaseAsked: signal<{ by: string; hands: readonly number[] } | null>(null),

@@ -193,6 +193,7 @@ export class Studio {
         this.greet(event.role);
         store.client.value = event.client;
         store.hasLease.value = event.has_lease;
+        store.isOwner.value = event.is_owner;
         store.examples.value = event.examples;
         store.forcesOff.value = event.forces_off;
         store.demo.value = event.demo;

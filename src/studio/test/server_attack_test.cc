@@ -1,0 +1,326 @@
+// Every command, every field and every route, with values that an attacker would send, by each role
+// of docs/access.md, through a real socket: no path of the host, nothing of other products, no
+// code, and nobody is locked out. A new command or field is attacked as soon as it is in
+// protocol.json.
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "record/recorder.h"
+#include "studio/recording.h"
+#include "studio/test/protocol_schema.h"
+#include "studio/test/server_fixture.h"
+
+namespace hvas::studio {
+namespace {
+
+using testing::CommandExample;
+using testing::Headers;
+using testing::Message;
+using testing::RawClient;
+using testing::Reply;
+using testing::ServerTest;
+
+constexpr const char* kForeign = "foreign";  // A recording of a product that is not open.
+
+/** JSON texts to put in place of a field. */
+std::vector<std::string> MakeHostileValues() {
+  std::vector<std::string> values{R"("/etc/passwd")",
+                                  R"("../../../../../../etc/passwd")",
+                                  R"("plugin:/proc/self/exe")",
+                                  R"("/proc/self/fd/3")",
+                                  R"("file:///etc/passwd")",
+                                  R"("network:0.0.0.0:0")",
+                                  R"("\\\\host\\share")",
+                                  R"("a\u0000b")",
+                                  R"("\r\nSet-Cookie: a=b")",
+                                  "\"foreign\"",
+                                  "4294967294",
+                                  "4294967295",
+                                  "1e9",
+                                  "18446744073709551616",
+                                  "-1",
+                                  "0.5",
+                                  "1e308",
+                                  "-1e308",
+                                  "1e999",
+                                  "NaN",
+                                  "Infinity",
+                                  "true",
+                                  "null",
+                                  "[]",
+                                  "{}",
+                                  R"([[[[{"a": [null]}]]]])",
+                                  R"({"__proto__": 1})",
+                                  "\"\""};
+  values.push_back("\"" + std::string(50'000, 'a') + "\"");
+  values.push_back(std::string(20'000, '[') + std::string(20'000, ']'));
+  return values;
+}
+
+class ServerAttackTest : public ServerTest {
+ protected:
+  ServerAttackTest() : recordings_(testing::SmallBench().recordings_folder) {}
+
+  void SetUp() override {
+    ServerTest::SetUp();
+    record::RecorderOptions options;
+    options.path = recordings_ / (std::string(kForeign) + ".hvasrec");
+    std::filesystem::create_directories(recordings_);
+    auto recorder = record::Recorder::Create(
+        options, {{"product", "secret product"}, {kProductDigestMeta, "another"}});
+    ASSERT_TRUE(recorder.has_value()) << recorder.error().ToString();
+    (*recorder)->AddTick({});
+    ASSERT_TRUE((*recorder)->Finish().has_value());
+    // All of them come once, so that a later connection finds its session.
+    owner_ = JoinAndOpen();
+    guest_cookie_ = Invite("operator");
+  }
+
+  void TearDown() override {
+    ServerTest::TearDown();
+    std::filesystem::remove(recordings_ / (std::string(kForeign) + ".hvasrec"));
+  }
+
+  /** The Cookie header of a browser that the owner has invited. */
+  std::string Invite(const std::string& role) {
+    const Reply made =
+        Post("/api/link", Json{{"role", role}}.dump(), {{"Cookie", CookieOf(Role::kOperator)}});
+    EXPECT_EQ(made.status, 200);
+    const std::string given =
+        GiveToken(Json::parse(made.body)["token"].get<std::string>()).headers["set-cookie"];
+    return given.substr(0, given.find(';'));
+  }
+
+  std::unique_ptr<RawClient> JoinWith(const std::string& cookie) const {
+    auto client = Connect();
+    client->SendUpgrade({{"Host", host()}, {"Origin", origin()}, {"Cookie", cookie}});
+    EXPECT_EQ(client->ReadReply().status, 101);
+    return client;
+  }
+
+  /** Nothing that a client gets names a folder of this machine or another product. */
+  void CheckText(const std::string& text, const std::string& sent) const {
+    for (const std::string& secret :
+         {folder_.string(), recordings_.string(), std::filesystem::current_path().string(),
+          std::string(HVAS_SOURCE_DIR), std::string("secret product"), std::string("root:x:"),
+          std::string("No such file"), std::string("cannot open shared object")}) {
+      EXPECT_EQ(text.find(secret), std::string::npos)
+          << sent.substr(0, 200) << "\n-> " << text.substr(0, 500);
+    }
+  }
+
+  static constexpr std::size_t kLast = 999'999;  // Id of a command that ends a series.
+
+  /** The id of an answer; the largest number for none, as of what is no JSON. */
+  static std::size_t IdOf(const Json& reply) {
+    const auto id = reply.find("id");
+    return id != reply.end() && id->is_number_unsigned() ? id->get<std::size_t>() : SIZE_MAX;
+  }
+
+  /** Sends messages of one browser, in as many connections as the limit of its commands needs.
+   @returns the answers to those that were obeyed. */
+  std::set<std::string> SendAll(const std::string& cookie,
+                                const std::vector<std::pair<std::string, std::string>>& messages) {
+    constexpr std::size_t kAtOnce = 60;  // Of the Hub::kCommandBurst.
+    std::set<std::string> obeyed;
+    for (std::size_t begin = 0; begin < messages.size(); begin += kAtOnce) {
+      const auto client = JoinWith(cookie);
+      const std::size_t end = std::min(begin + kAtOnce, messages.size());
+      for (std::size_t i = begin; i < end; ++i) {
+        EXPECT_TRUE(client->SendMessage(Message::kText, messages[i].second));
+      }
+      client->SendMessage(Message::kText, Json{{"id", kLast}, {"command", "status"}}.dump());
+      const Json last = Await(client.get(), [&](const Json& json) {
+        const std::size_t i = IdOf(json);
+        const std::string sent = i < messages.size() ? messages[i].second : "";
+        CheckText(json.dump(), sent);
+        if (json.value("ok", false) && i < messages.size()) {
+          obeyed.insert(messages[i].first);
+        }
+        return i == kLast;
+      });
+      EXPECT_FALSE(last.is_null()) << "the connection ended after " << messages[begin].second;
+    }
+    return obeyed;
+  }
+
+  /** All attacks on all commands: name of the command, text of the message. */
+  static std::vector<std::pair<std::string, std::string>> MakeAttacks() {
+    std::vector<std::pair<std::string, std::string>> attacks;
+    const auto add = [&](const CommandExample& example, const Json& message,
+                         const std::string& field, const std::string& value) {
+      Json rest = message;
+      rest.erase(field);
+      rest["id"] = attacks.size();
+      std::string text = rest.dump();
+      if (!field.empty()) {
+        text.insert(text.size() - 1, "," + Json(field).dump() + ":" + value);
+      }
+      attacks.emplace_back(example.name, text);
+    };
+    for (const CommandExample& example : testing::MakeCommandExamples()) {
+      add(example, example.message, "", "");
+      for (const std::string& field : example.fields) {
+        for (const std::string& value : MakeHostileValues()) {
+          add(example, example.message, field, value);
+        }
+      }
+    }
+    return attacks;
+  }
+
+  /** The open product is still there, and the owner, a viewer and the forces work. */
+  void CheckAllIsWell() {
+    EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
+    const auto viewer = Join(Role::kViewer);
+    EXPECT_TRUE(AwaitEvent(viewer.get(), "hello")["has_scene"]);
+    EXPECT_TRUE(Command(viewer.get(), {{"id", 1}, {"command", "forces"}, {"off", true}})["ok"]);
+    EXPECT_TRUE(bench_->live().forces_off());
+    EXPECT_TRUE(Command(owner_.get(), {{"id", 1}, {"command", "forces"}, {"off", false}})["ok"]);
+    EXPECT_TRUE(std::filesystem::exists(recordings_ / (std::string(kForeign) + ".hvasrec")));
+  }
+
+  std::filesystem::path recordings_;
+  std::unique_ptr<RawClient> owner_;
+  std::string guest_cookie_;
+};
+
+TEST_F(ServerAttackTest, ViewerIsObeyedInNothingThatChangesTheWork) {
+  std::set<std::string> allowed;
+  for (const CommandExample& example : testing::MakeCommandExamples()) {
+    if (example.right == "anybody") {
+      allowed.insert(example.name);
+    }
+  }
+  for (const std::string& name : SendAll(CookieOf(Role::kViewer), MakeAttacks())) {
+    EXPECT_TRUE(allowed.count(name) > 0) << name;
+  }
+  CheckAllIsWell();
+}
+
+TEST_F(ServerAttackTest, GuestWithoutALeaseIsObeyedInNothingThatNeedsOne) {
+  std::set<std::string> allowed;
+  for (const CommandExample& example : testing::MakeCommandExamples()) {
+    if (example.right == "anybody" || example.right == "operator") {
+      allowed.insert(example.name);
+    }
+  }
+  for (const std::string& name : SendAll(guest_cookie_, MakeAttacks())) {
+    EXPECT_TRUE(allowed.count(name) > 0) << name;
+  }
+  CheckAllIsWell();
+}
+
+TEST_F(ServerAttackTest, GuestWithTheLeaseDoesNothingThatIsTheOwners) {
+  const auto guest = JoinWith(guest_cookie_);
+  const Json hello = AwaitEvent(guest.get(), "hello");
+  EXPECT_TRUE(Command(
+      owner_.get(),
+      {{"id", 1}, {"command", "lease"}, {"action", "give"}, {"to", hello["client"]}})["ok"]);
+  std::vector<std::pair<std::string, std::string>> attacks;
+  std::set<std::string> owners;
+  for (const CommandExample& example : testing::MakeCommandExamples()) {
+    if (example.right == "owner") {
+      owners.insert(example.name);
+    }
+  }
+  ASSERT_FALSE(owners.empty());
+  for (const auto& attack : MakeAttacks()) {
+    // What sends its lease away, or ends what the test looks at, is tried by the others.
+    if (attack.first == "use" || attack.first == "open" || owners.count(attack.first) > 0) {
+      attacks.push_back(attack);
+    }
+  }
+  for (std::size_t i = 0; i < attacks.size(); ++i) {
+    Json renumbered = Json::parse(attacks[i].second, nullptr, false);
+    if (renumbered.is_object()) {
+      renumbered["id"] = i;
+      attacks[i].second = renumbered.dump();
+    }
+  }
+  for (std::size_t i = 0; i < attacks.size(); ++i) {
+    guest->SendMessage(Message::kText, attacks[i].second);
+    const Json reply = Await(guest.get(), [](const Json& json) { return json.contains("ok"); });
+    ASSERT_FALSE(reply.is_null());
+    if (reply.contains("error") && reply["error"]["message"] == "too many commands") {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      --i;
+      continue;
+    }
+    CheckText(reply.dump(), attacks[i].second);
+    if (owners.count(attacks[i].first) > 0) {
+      EXPECT_FALSE(reply["ok"]) << attacks[i].second;
+    }
+  }
+  EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
+}
+
+TEST_F(ServerAttackTest, LongMessagesEndTheConnectionAlone) {
+  for (const std::string& cookie : {CookieOf(Role::kViewer), guest_cookie_}) {
+    const auto client = JoinWith(cookie);
+    client->SendMessage(Message::kText, R"({"id": 1, "command": "use", "device": ")" +
+                                            std::string(1 << 20, 'a') + "\"}");
+    EXPECT_TRUE(client->IsClosed());
+  }
+  CheckAllIsWell();
+}
+
+TEST_F(ServerAttackTest, RoutesTellNobodyButTheOwnerOfOtherProducts) {
+  const std::vector<std::string> names{
+      kForeign, "..",    "%2e%2e",     "..%2f..%2fetc%2fpasswd", "%2fetc%2fpasswd",
+      "%00",    "a%00b", "foreign%00", "foreign%2f..%2fforeign", std::string(5000, 'a'),
+      "%",      "%%%",   "nothing"};
+  for (const std::string& cookie : {CookieOf(Role::kViewer), guest_cookie_, std::string()}) {
+    for (const std::string& name : names) {
+      for (const std::string& route :
+           {"/api/recording/" + name, "/api/recording/" + name + "/file",
+            "/api/recording/" + name + "/frames", "/api/recording/" + name + "/scene",
+            "/api/recording/" + name + "/model.glb", "/api/model/" + name + ".glb",
+            "/api/path/" + name + ".glb", "/" + name, "/api/" + name}) {
+        const Reply reply = Get(route, {{"Cookie", cookie}});
+        EXPECT_TRUE(reply.status >= 400) << route << " " << reply.status;
+        CheckText(reply.body, route);
+      }
+    }
+    const Reply list = Get("/api/recordings", {{"Cookie", cookie}});
+    EXPECT_EQ(list.status, cookie.empty() ? 401 : 200);
+    CheckText(list.body, "/api/recordings");
+  }
+  // The same answer whether there is one or not.
+  const std::string viewer = CookieOf(Role::kViewer);
+  EXPECT_EQ(Get("/api/recording/nothing", {{"Cookie", viewer}}).body,
+            Get("/api/recording/foreign", {{"Cookie", viewer}}).body);
+  EXPECT_EQ(Get("/api/recording/foreign", {{"Cookie", CookieOf(Role::kOperator)}}).status, 200);
+  CheckAllIsWell();
+}
+
+TEST_F(ServerAttackTest, NobodyButTheOwnerInvitesOthersToWork) {
+  for (const std::string& cookie : {CookieOf(Role::kViewer), guest_cookie_, std::string()}) {
+    for (const char* body : {R"({"role": "operator"})", R"({"role": "participant"})", "[]", "{",
+                             R"({"role": {"a": 1}})"}) {
+      EXPECT_GE(Post("/api/link", body, {{"Cookie", cookie}}).status, 400) << body;
+    }
+  }
+  EXPECT_EQ(Post("/api/link", R"({"role": "viewer"})", {{"Cookie", guest_cookie_}}).status, 200);
+}
+
+TEST_F(ServerAttackTest, NamesOfUploadsLeadNowhereElse) {
+  for (const char* name : {"..%2f..%2fa.step", "/etc/passwd", "a%00.step", "%2e%2e", "..", ".", "",
+                           "a%0d%0aSet-Cookie:%20a.step", "con.step", "a/b/c.step"}) {
+    const Reply reply =
+        Post(std::string("/api/upload?name=") + name, "x", {{"Cookie", guest_cookie_}});
+    EXPECT_EQ(reply.status, 200) << name;
+    CheckText(reply.body, name);
+    EXPECT_EQ(CountFiles(), 2u) << "a file in a folder of its own";
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.parent_path() / "a.step"));
+}
+
+}  // namespace
+}  // namespace hvas::studio
