@@ -27,7 +27,7 @@ Result<std::string> UnpackOutcome(std::string_view bytes, const std::filesystem:
     return std::string(bytes.substr(1));
   }
   const Json json = bytes.empty() ? Json() : ParseJson<Json>(bytes.substr(1));
-  constexpr auto kLast = static_cast<std::uint32_t>(ErrorCode::kInternal);
+  constexpr auto kLast = static_cast<std::uint32_t>(ErrorCode::kInternal);  // Of the codes.
   const auto code = std::min(session::IndexOr(json, "code", kLast), kLast);
   return Fail(
       static_cast<ErrorCode>(code), session::TextOr(json, "message", "the record cannot be read"),
