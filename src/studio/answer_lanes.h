@@ -5,30 +5,29 @@
 #include <utility>
 
 #include "base/job_thread.h"
-#include "studio/access.h"
 
 namespace hvas::studio {
 
 /** Threads on which the server does what may take longer than a millisecond, so that the network
  thread never waits: forces off comes by it. What one client asks for delays others as little as
- possible: records have threads of their own, as anybody may have made them, and so have operators.
+ possible: records have threads of their own, as anybody may have made them, and so has the owner.
  Any thread may call any function. */
 class AnswerLanes {
  public:
   enum class Lane : std::size_t {
-    kViewersScenes,
-    kViewersRecords,
-    kOperatorsScenes,
-    kOperatorsRecords,
+    kGuestsScenes,
+    kGuestsRecords,
+    kOwnersScenes,
+    kOwnersRecords,
     kDisk,  ///< Reading and writing of some kilobytes at a time.
   };
 
   /** The lane of a request. */
-  [[nodiscard]] static Lane Find(Role role, bool is_of_records) {
-    if (role == Role::kOperator) {
-      return is_of_records ? Lane::kOperatorsRecords : Lane::kOperatorsScenes;
+  [[nodiscard]] static Lane Find(bool is_owner, bool is_of_records) {
+    if (is_owner) {
+      return is_of_records ? Lane::kOwnersRecords : Lane::kOwnersScenes;
     }
-    return is_of_records ? Lane::kViewersRecords : Lane::kViewersScenes;
+    return is_of_records ? Lane::kGuestsRecords : Lane::kGuestsScenes;
   }
 
   /** @returns false when kMostWaiting wait already. */

@@ -218,7 +218,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         self->Reply(std::move(made));
       });
     };
-    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor.role, is_of_records), std::move(job))) {
+    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor.is_owner, is_of_records),
+                                 std::move(job))) {
       Refuse(http::status::service_unavailable,
              {ErrorCode::kOutOfResource, "too many requests wait for an answer", std::move(path),
               "try again in a few seconds"});

@@ -224,12 +224,12 @@ TEST(AnswerLanesTest, RefuseWhatIsTooMuchAndOneDoesNotHoldUpAnother) {
     }
   };
   int taken = 0;
-  while (lanes.TryPost(Lane::kViewersRecords, wait)) {
+  while (lanes.TryPost(Lane::kGuestsRecords, wait)) {
     ASSERT_LT(++taken, 100);
   }
   EXPECT_GT(taken, 16);
-  EXPECT_TRUE(lanes.TryPost(Lane::kOperatorsRecords,
-                            [&is_done](const std::stop_token&) { is_done = true; }));
+  EXPECT_TRUE(
+      lanes.TryPost(Lane::kOwnersRecords, [&is_done](const std::stop_token&) { is_done = true; }));
   EXPECT_TRUE(hvas::testing::AwaitTrue([&] { return is_done.load(); }));
   lanes.Stop();  // ends the first, and forgets the others
   EXPECT_FALSE(may_end);
