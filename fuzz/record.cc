@@ -16,7 +16,7 @@
 #include "fuzz/target.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
-#include "studio/recording_shelf.h"
+#include "studio/record_parts.h"
 
 namespace hvas::fuzz {
 namespace {
@@ -96,11 +96,9 @@ void ReadAll(const std::filesystem::path& folder, const std::filesystem::path& f
     CheckOutcome(evidence::WriteJson(&*reader, {}, folder / "x.json"));
     CheckOutcome(evidence::WritePathGlb(&*reader, {}, folder / "x.glb"));
   }
-  studio::RecordingShelf shelf(folder);
-  static_cast<void>(shelf.List());
-  CheckOutcome(shelf.Describe("record"));
-  CheckOutcome(shelf.ReadFrames("record"));
-  CheckOutcome(shelf.ReadAttachment("record", "scene.json"));
+  for (std::size_t part = 0; part < studio::kRecordParts.size(); ++part) {
+    CheckOutcome(studio::ReadRecordPart(file, static_cast<studio::RecordPart>(part)));
+  }
 }
 
 void Write(const std::filesystem::path& file, std::string_view bytes) {

@@ -220,7 +220,7 @@ void Attend(const WorkerCall& call, pid_t child, int pipe, WorkerRun* run) {
 // The program or library that has this code; empty where that is not known.
 fs::path FindOwnFile() {
   Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&FindWorker), &info) == 0 ||
+  if (::dladdr(reinterpret_cast<const void*>(&RunWorker), &info) == 0 ||
       info.dli_fname == nullptr) {
     return {};
   }
@@ -231,33 +231,38 @@ fs::path FindOwnFile() {
 
 }  // namespace
 
-Result<fs::path> FindWorker() {
-  constexpr const char* kName = "hvas-cad";
-  const char* told = std::getenv("HVAS_CAD_WORKER");
+Result<fs::path> FindWorker(const WorkerPlace& place) {
+  const char* told = std::getenv(place.variable);
   if (told != nullptr && *told != '\0') {
     if (::access(told, X_OK) == 0) {
       return fs::path(told);
     }
-    return Fail(ErrorCode::kNotFound, "the program in HVAS_CAD_WORKER cannot be started", told,
+    return Fail(ErrorCode::kNotFound,
+                fmt::format("the program in {} cannot be started", place.variable), told,
                 "correct or unset the variable");
   }
   std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kName;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / place.name;
   std::vector<fs::path> places{beside};
   // Of a library in lib or lib/<architecture>, or in a package of Python.
   const fs::path library = FindOwnFile().parent_path();
   for (fs::path folder = library; folder != library.root_path() && places.size() < 4;
        folder = folder.parent_path()) {
-    places.push_back(folder / "bin" / kName);
+    places.push_back(folder / "bin" / place.name);
   }
-  places.emplace_back(HVAS_BUILT_CAD_WORKER);
+  places.emplace_back(place.built);
   for (const fs::path& path : places) {
     if (::access(path.c_str(), X_OK) == 0) {
       return path;
     }
   }
-  return Fail(ErrorCode::kNotFound, "the program hvas-cad, which reads CAD files, is missing",
-              beside.string(), "install it beside hvas, or set HVAS_CAD_WORKER to its path");
+  return Fail(ErrorCode::kNotFound, fmt::format("the program {} is missing", place.name),
+              beside.string(),
+              fmt::format("install it beside hvas, or set {} to its path", place.variable));
+}
+
+Result<fs::path> FindWorker() {
+  return FindWorker({"hvas-cad", "HVAS_CAD_WORKER", HVAS_BUILT_CAD_WORKER});
 }
 
 std::string WorkerRun::Describe() const {

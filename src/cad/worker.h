@@ -8,28 +8,34 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/served_process.h"
 #include "cad/import.h"
 #include "cad/input_file.h"
 
-/** `hvas-cad`, the program that holds everything that needs OpenCASCADE, seen from outside.
-
- It gets its arguments, an open file for what it makes (kOutputDescriptor), and a pipe for lines
- about how it goes (kProgressDescriptor): "stage FRACTION NAME" and "part NUMBER NAME". It exits
- with 0 when the output is complete. */
+/** `hvas-cad`, the program that holds everything that needs OpenCASCADE, seen from outside, and
+ other programs that serve this one (base/served_process.h). The lines that they write about how it
+ goes are "stage FRACTION NAME" and "part NUMBER NAME". */
 namespace hvas::cad {
 
-// The first two that are free in a process that has input, output and errors.
-inline constexpr int kProgressDescriptor = 3;
-inline constexpr int kOutputDescriptor = 4;
+using hvas::kOutputDescriptor;
+using hvas::kProgressDescriptor;
+using hvas::kWorkerNoMemory;
+using hvas::kWorkerNoOutput;
+using hvas::kWorkerUsage;
 
-/** Exit statuses of the worker, beside 0. */
-inline constexpr int kWorkerUsage = 64;
-inline constexpr int kWorkerNoMemory = 71;
-inline constexpr int kWorkerNoOutput = 74;
+/** Where a program is looked for that is installed beside this one. */
+struct WorkerPlace {
+  const char* name;      ///< Name of its file.
+  const char* variable;  ///< Variable of the environment that may have its path.
+  const char* built;     ///< Path in the build tree.
+};
 
-/** $HVAS_CAD_WORKER, else `hvas-cad` beside the running program, else in `bin` of the folder that
- the library of HVAS lies in, or of one of the two above it, else that of the build tree that this
- code was built in. Errors: kNotFound. */
+/** The path in the variable, else the file beside the running program, else in `bin` of the folder
+ that the library of HVAS lies in, or of one of the two above it, else that of the build tree that
+ this code was built in. Errors: kNotFound. */
+[[nodiscard]] Result<std::filesystem::path> FindWorker(const WorkerPlace& place);
+
+/** Finds hvas-cad; its variable is HVAS_CAD_WORKER. Errors: kNotFound. */
 [[nodiscard]] Result<std::filesystem::path> FindWorker();
 
 struct WorkerCall {

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace hvas::campaign {
 namespace {
 
@@ -21,6 +23,10 @@ Cause FindCause(std::string_view word) {
 }
 
 }  // namespace
+
+std::string DescribeRowTable() {
+  return kCreateRuns;
+}
 
 Result<RowTable> RowTable::Create(record::Database* database) {
   if (const auto made = database->Execute(kCreateRuns); !made) {
@@ -50,8 +56,9 @@ Result<std::vector<RunResult>> ReadRows(record::Database* database) {
   if (!select) {
     return Unexpected(select.error());
   }
+  constexpr std::size_t kMostRows = 10'000'000;  // Some gigabytes of memory: a choice.
   std::vector<RunResult> rows;
-  for (;;) {
+  while (rows.size() <= kMostRows) {
     const auto has_row = select->Step();
     if (!has_row) {
       return Unexpected(has_row.error());
@@ -73,6 +80,8 @@ Result<std::vector<RunResult>> ReadRows(record::Database* database) {
     row.time = select->ReadReal(10);
     rows.push_back(row);
   }
+  return Fail(ErrorCode::kUnsupported, fmt::format("there are more than {} rows", kMostRows),
+              database->path(), "make the campaign's shards smaller");
 }
 
 }  // namespace hvas::campaign

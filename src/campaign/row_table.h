@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -23,7 +24,11 @@ class RowTable {
   record::Statement insert_;
 };
 
-/** Reads all rows of the table, in the order of their runs. Errors: those of the database. */
+/** The statement that makes the table. */
+[[nodiscard]] std::string DescribeRowTable();
+
+/** Reads all rows of the table, in the order of their runs. Errors: those of the database;
+ kUnsupported for more than ten million rows. */
 [[nodiscard]] Result<std::vector<RunResult>> ReadRows(record::Database* database);
 
 }  // namespace hvas::campaign

@@ -6,6 +6,7 @@
 #include "base/regular_file.h"
 #include "campaign/row_table.h"
 #include "record/database.h"
+#include "record/table_check.h"
 
 namespace hvas::campaign {
 namespace {
@@ -20,6 +21,9 @@ std::string DigestRows(const std::vector<RunResult>& rows) {
   }
   return digest.Hex();
 }
+
+constexpr const char* kCreateOrigin =
+    "CREATE TABLE origin (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID";
 
 Unexpected FailDamaged(const std::filesystem::path& file, const std::string& what) {
   return Fail(ErrorCode::kUnreadable, "the shard is damaged: " + what, file.string(),
@@ -41,8 +45,7 @@ Result<std::string> ReadOrigin(record::Database* database, std::string_view name
 
 Result<void> FillShard(record::Database* database, const ShardKey& key,
                        const std::vector<RunResult>& rows) {
-  auto done = database->Execute(
-      "BEGIN; CREATE TABLE origin (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID");
+  auto done = database->Execute(std::string("BEGIN; ") + kCreateOrigin);
   if (!done) {
     return done;
   }
@@ -131,6 +134,10 @@ Result<std::vector<RunResult>> ReadShard(const std::filesystem::path& file, cons
   auto database = record::Database::Open(file, record::Database::Mode::kReadOnly);
   if (!database) {
     return FailDamaged(file, database.error().message);
+  }
+  const std::string tables = std::string(kCreateOrigin) + ";" + DescribeRowTable();
+  if (const auto checked = record::CheckTables(&*database, tables); !checked) {
+    return FailDamaged(file, checked.error().message);
   }
   const auto inputs = ReadOrigin(&*database, "inputs");
   const auto shard = ReadOrigin(&*database, "shard");

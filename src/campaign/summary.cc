@@ -67,8 +67,10 @@ std::string NameEntity(const CellCounts& counts, Cause cause, std::int64_t entit
   if (!counts.prepared) {
     return fmt::format("{}{}", cause == Cause::kNotSeated ? "o" : "m", entity);
   }
+  const auto& occurrences = counts.prepared->product.occurrences;
+  const auto index = static_cast<std::size_t>(entity);
   if (cause == Cause::kNotSeated) {
-    return counts.prepared->product.occurrences[static_cast<std::size_t>(entity)].path;
+    return index < occurrences.size() ? occurrences[index].path : fmt::format("o{}", entity);
   }
   const auto& mates = counts.prepared->fits.mates();
   const auto found = std::find_if(mates.begin(), mates.end(), [entity](const FittedMate& mate) {
@@ -237,6 +239,14 @@ class Collector {
   }
 
   Result<void> AddOne(const RunResult& row) {
+    const Plan& plan = folder_->plan();
+    if (row.cell < 0 || row.cell >= plan.CountCells() || row.run < 0 ||
+        row.run >= plan.CountRuns()) {
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("a shard has run {} of combination {}, which the plan does not have",
+                              row.run, row.cell),
+                  folder_->path().string(), "remove its shards, and run the campaign again");
+    }
     AddRow(row, &digest_);
     ++summary_.runs_done;
     auto found = counts_.find(row.cell);

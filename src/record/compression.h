@@ -10,7 +10,7 @@ namespace hvas::record {
 [[nodiscard]] std::vector<std::byte> Compress(std::span<const std::byte> bytes);
 
 /** Empty for anything but a block of Compress(), and for one of more than `limit` bytes. Takes any
- bytes. */
+ bytes: what a block says about its size takes no memory, only what comes out of it does. */
 [[nodiscard]] std::vector<std::byte> Decompress(std::span<const std::byte> block,
                                                 std::size_t limit);
 

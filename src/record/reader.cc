@@ -1,16 +1,16 @@
 #include "record/reader.h"
 
+#include <algorithm>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "base/digest.h"
-#include "base/regular_file.h"
 #include "record/compression.h"
 #include "record/packing.h"
 #include "record/seal_check.h"
 #include "record/session_digest.h"
+#include "record/table_check.h"
 #include "record/tick_coding.h"
 
 namespace hvas::record {
@@ -20,14 +20,75 @@ bool IsWhole(std::span<const std::byte> bytes, std::int64_t checksum) {
   return static_cast<std::int64_t>(Checksum64(bytes)) == checksum;
 }
 
+/** What is read of a table at most; all are choices. */
+struct TableLimits {
+  const char* rows_name;  ///< What its rows are, for people.
+  std::int64_t most_rows;
+  std::uint64_t most_bytes;  ///< Of texts and blobs that are kept in memory together.
+  bool has_ids;              ///< The first column is a number that grows from row to row.
+};
+
+constexpr std::uint64_t kMostText = std::uint64_t{1} << 30;                     // A choice.
+constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();  // One at a time.
+constexpr TableLimits kMetaLimits{"entries", 1000, kMostText / 4, false};
+constexpr TableLimits kAttachmentLimits{"attachments", 100, kMostText / 1024, false};
+constexpr TableLimits kOneAttachment{"attachments", 100, kAnyBytes, false};
+// A session of a day has a chunk each half second for each two hands, and a frame 30 times a
+// second.
+constexpr TableLimits kChunkLimits{"chunks", 5'000'000, kAnyBytes, true};
+constexpr TableLimits kFrameLimits{"frames", 5'000'000, kAnyBytes, true};
+constexpr TableLimits kEventLimits{"events", 500'000, kMostText, true};
+constexpr TableLimits kCommandLimits{"commands", 10'000'000, kMostText, true};
+
+/** Checks the rows of a table one after the other. */
+class RowCheck {
+ public:
+  RowCheck(const TableLimits& limits, const std::string& path) : limits_(limits), path_(path) {}
+
+  Result<void> Check(const Statement& row) {
+    count_ += 1;
+    bytes_ += limits_.most_bytes == kAnyBytes ? 0 : row.CountBytes();
+    if (count_ > limits_.most_rows) {
+      return Fail(ErrorCode::kUnsupported,
+                  fmt::format("the record has more than {} {}, the most that are read",
+                              limits_.most_rows, limits_.rows_name),
+                  path_, "record the session in parts");
+    }
+    if (bytes_ > limits_.most_bytes) {
+      return Fail(
+          ErrorCode::kUnsupported,
+          fmt::format("the {} of the record have more than {} bytes, the most that are read",
+                      limits_.rows_name, limits_.most_bytes),
+          path_, "record the session in parts");
+    }
+    if (limits_.has_ids && row.ReadInt(0) <= last_id_) {
+      return Fail(ErrorCode::kUnreadable,
+                  fmt::format("the {} of the record are damaged: number {} follows {}",
+                              limits_.rows_name, row.ReadInt(0), last_id_),
+                  path_, "restore the file from a copy");
+    }
+    last_id_ = limits_.has_ids ? row.ReadInt(0) : 0;
+    return {};
+  }
+
+ private:
+  const TableLimits& limits_;
+  const std::string path_;
+  std::int64_t count_{0};
+  std::uint64_t bytes_{0};
+  std::int64_t last_id_{std::numeric_limits<std::int64_t>::min()};
+};
+
 /** Visits the rows of a statement that is ready to run, until the visitor fails or returns false.
- */
-Result<void> ForEachRow(Statement* rows,
+ Errors: those of the file; kUnsupported beyond the limits. */
+Result<void> ForEachRow(Statement* rows, const TableLimits& limits, const std::string& path,
                         const std::function<Result<bool>(const Statement&)>& visit) {
+  RowCheck check(limits, path);
   for (;;) {
     Result<bool> goes_on = rows->Step();
     if (goes_on && *goes_on) {
-      goes_on = visit(*rows);
+      const auto checked = check.Check(*rows);
+      goes_on = checked ? visit(*rows) : Unexpected(checked.error());
     }
     if (!goes_on) {
       return Unexpected(goes_on.error());
@@ -41,9 +102,6 @@ Result<void> ForEachRow(Statement* rows,
 }  // namespace
 
 Result<Reader> Reader::Open(const std::filesystem::path& path) {
-  if (const auto checked = CheckRegularFile(path); !checked) {
-    return Unexpected(checked.error());
-  }
   Result<Database> database = Database::Open(path, Database::Mode::kReadOnly);
   if (!database) {
     return Unexpected(database.error());
@@ -78,6 +136,10 @@ Result<void> Reader::CheckKind() {
     return Fail(ErrorCode::kUnreadable, "this is not a session record", path_.string(),
                 "give a file that HVAS recorded");
   }
+  const std::string newest = ListTables(kSchemaVersion);
+  if (auto checked = CheckTable(&database_, newest, "schema_version"); !checked) {
+    return checked;
+  }
   const Result<std::int64_t> version = database_.QueryInt("SELECT version FROM schema_version");
   if (!version) {
     return Unexpected(version.error());
@@ -94,7 +156,7 @@ Result<void> Reader::CheckKind() {
                 path_.string(), "restore the file from a copy");
   }
   schema_ = *version;
-  return {};
+  return CheckTables(&database_, ListTables(schema_));
 }
 
 Result<void> Reader::ReadMeta() {
@@ -103,15 +165,17 @@ Result<void> Reader::ReadMeta() {
   if (!rows) {
     return Unexpected(rows.error());
   }
-  Result<void> done = ForEachRow(&*rows, [this](const Statement& row) -> Result<bool> {
-    meta_[row.ReadText(0)] = row.ReadText(1);
-    return true;
-  });
+  Result<void> done =
+      ForEachRow(&*rows, kMetaLimits, path_.string(), [this](const Statement& row) -> Result<bool> {
+        meta_[row.ReadText(0)] = row.ReadText(1);
+        return true;
+      });
   if (!done) {
     return done;
   }
-  const Result<std::int64_t> count =
-      database_.QueryInt("SELECT coalesce(sum(count), 0) FROM chunk");
+  // No chunk has more or less, whatever it says; UnpackChunk() names those that say so.
+  const Result<std::int64_t> count = database_.QueryInt(
+      fmt::format("SELECT coalesce(sum(max(0, min(count, {}))), 0) FROM chunk", kChunkTicks));
   if (!count) {
     return Unexpected(count.error());
   }
@@ -151,18 +215,19 @@ Result<void> Reader::ForEachPackedTick(Span span, const std::function<bool(Bytes
   }
   rows->Bind(1, span.first_ns).Bind(2, span.last_ns);
   const std::size_t size = PackedTickSize(schema_);
-  return ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-    const Result<std::vector<std::byte>> packed = UnpackChunk(row);
-    if (!packed) {
-      return Unexpected(packed.error());
-    }
-    for (std::size_t at = 0; at < packed->size(); at += size) {
-      if (!visit(Bytes(*packed).subspan(at, size))) {
-        return false;
-      }
-    }
-    return true;
-  });
+  return ForEachRow(&*rows, kChunkLimits, path_.string(),
+                    [&](const Statement& row) -> Result<bool> {
+                      const Result<std::vector<std::byte>> packed = UnpackChunk(row);
+                      if (!packed) {
+                        return Unexpected(packed.error());
+                      }
+                      for (std::size_t at = 0; at < packed->size(); at += size) {
+                        if (!visit(Bytes(*packed).subspan(at, size))) {
+                          return false;
+                        }
+                      }
+                      return true;
+                    });
 }
 
 Result<void> Reader::ForEachTick(Span span, const std::function<bool(const TickRecord&)>& visit) {
@@ -186,23 +251,29 @@ Result<std::vector<TickRecord>> Reader::ReadTicks(Span span) {
 
 Result<std::vector<Event>> Reader::ReadEvents() {
   Result<Statement> rows = database_.Prepare(
-      "SELECT id, t_ns, kind, occurrence, json, checksum "
+      "SELECT id, t_ns, kind, coalesce(occurrence, -1), json, checksum "
       "FROM event ORDER BY id");
   if (!rows) {
     return Unexpected(rows.error());
   }
   std::vector<Event> events;
-  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-    Event event{row.ReadInt(1), row.ReadText(2), kNoOccurrence, row.ReadText(4)};
-    if (!row.is_null(3)) {
-      event.occurrence = static_cast<std::uint32_t>(row.ReadInt(3));
-    }
-    if (static_cast<std::int64_t>(CalcChecksum(event)) != row.ReadInt(5)) {
-      return Damaged(fmt::format("Event {}", row.ReadInt(0)));
-    }
-    events.push_back(std::move(event));
-    return true;
-  });
+  const Result<void> done =
+      ForEachRow(&*rows, kEventLimits, path_.string(), [&](const Statement& row) -> Result<bool> {
+        Event event{row.ReadInt(1), row.ReadText(2), kNoOccurrence, row.ReadText(4)};
+        constexpr std::int64_t kNone = -1;  // The query gives it for NULL.
+        const std::int64_t occurrence = row.ReadInt(3);
+        if (occurrence < kNone || occurrence >= std::int64_t{kNoOccurrence}) {
+          return Damaged(fmt::format("Event {}", row.ReadInt(0)));
+        }
+        if (occurrence != kNone) {
+          event.occurrence = static_cast<std::uint32_t>(occurrence);
+        }
+        if (static_cast<std::int64_t>(CalcChecksum(event)) != row.ReadInt(5)) {
+          return Damaged(fmt::format("Event {}", row.ReadInt(0)));
+        }
+        events.push_back(std::move(event));
+        return true;
+      });
   if (!done) {
     return Unexpected(done.error());
   }
@@ -220,14 +291,15 @@ Result<std::vector<Command>> Reader::ReadCommands() {
   if (!rows) {
     return Unexpected(rows.error());
   }
-  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-    Command command{row.ReadInt(1), row.ReadInt(2), row.ReadText(3), row.ReadText(4)};
-    if (static_cast<std::int64_t>(CalcChecksum(command)) != row.ReadInt(5)) {
-      return Damaged(fmt::format("Command {}", row.ReadInt(0)));
-    }
-    commands.push_back(std::move(command));
-    return true;
-  });
+  const Result<void> done =
+      ForEachRow(&*rows, kCommandLimits, path_.string(), [&](const Statement& row) -> Result<bool> {
+        Command command{row.ReadInt(1), row.ReadInt(2), row.ReadText(3), row.ReadText(4)};
+        if (static_cast<std::int64_t>(CalcChecksum(command)) != row.ReadInt(5)) {
+          return Damaged(fmt::format("Command {}", row.ReadInt(0)));
+        }
+        commands.push_back(std::move(command));
+        return true;
+      });
   if (!done) {
     return Unexpected(done.error());
   }
@@ -244,13 +316,14 @@ Result<void> Reader::ForEachFrame(Span span, const std::function<bool(const Fram
     return Unexpected(rows.error());
   }
   rows->Bind(1, span.first_ns).Bind(2, span.last_ns);
-  return ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-    const Bytes bytes = row.ReadBlob(3);
-    if (!IsWhole(bytes, row.ReadInt(2))) {
-      return Damaged(fmt::format("Frame {}", row.ReadInt(0)));
-    }
-    return visit({row.ReadInt(1), {bytes.begin(), bytes.end()}});
-  });
+  return ForEachRow(&*rows, kFrameLimits, path_.string(),
+                    [&](const Statement& row) -> Result<bool> {
+                      const Bytes bytes = row.ReadBlob(3);
+                      if (!IsWhole(bytes, row.ReadInt(2))) {
+                        return Damaged(fmt::format("Frame {}", row.ReadInt(0)));
+                      }
+                      return visit({row.ReadInt(1), {bytes.begin(), bytes.end()}});
+                    });
 }
 
 Result<std::vector<std::string>> Reader::ListAttachments() {
@@ -262,10 +335,11 @@ Result<std::vector<std::string>> Reader::ListAttachments() {
   if (!rows) {
     return Unexpected(rows.error());
   }
-  const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-    names.push_back(row.ReadText(0));
-    return true;
-  });
+  const Result<void> done = ForEachRow(&*rows, kAttachmentLimits, path_.string(),
+                                       [&](const Statement& row) -> Result<bool> {
+                                         names.push_back(row.ReadText(0));
+                                         return true;
+                                       });
   if (!done) {
     return Unexpected(done.error());
   }
@@ -273,7 +347,11 @@ Result<std::vector<std::string>> Reader::ListAttachments() {
 }
 
 Result<std::vector<std::byte>> Reader::ReadAttachment(const std::string& name) {
-  constexpr std::size_t kMostBytes = std::size_t{4} << 30;  // no record needs more memory
+  // An attachment has at most so many bytes, and so many for each that is stored beyond the first
+  // ones: JSON and meshes go into a hundredth of their size at best. Choices.
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  constexpr std::size_t kMostOfSmall = std::size_t{64} << 20;
+  constexpr std::size_t kMostRatio = 1000;
   std::optional<std::vector<std::byte>> found;
   if (schema_ >= 3) {
     Result<Statement> rows =
@@ -282,14 +360,18 @@ Result<std::vector<std::byte>> Reader::ReadAttachment(const std::string& name) {
       return Unexpected(rows.error());
     }
     rows->Bind(1, name);
-    const Result<void> done = ForEachRow(&*rows, [&](const Statement& row) -> Result<bool> {
-      const Bytes block = row.ReadBlob(1);
-      if (!IsWhole(block, row.ReadInt(0))) {
-        return Damaged(fmt::format("Attachment \"{}\"", name));
-      }
-      found = Decompress(block, kMostBytes);
-      return true;
-    });
+    const Result<void> done = ForEachRow(
+        &*rows, kOneAttachment, path_.string(), [&](const Statement& row) -> Result<bool> {
+          const Bytes block = row.ReadBlob(1);
+          if (!IsWhole(block, row.ReadInt(0))) {
+            return Damaged(fmt::format("Attachment \"{}\"", name));
+          }
+          found = Decompress(block, std::min(kMostBytes, kMostOfSmall + kMostRatio * block.size()));
+          if (found->empty() && !std::ranges::equal(block, Compress({}))) {
+            return Damaged(fmt::format("Attachment \"{}\"", name));
+          }
+          return true;
+        });
     if (!done) {
       return Unexpected(done.error());
     }

@@ -25,7 +25,7 @@ constexpr std::int64_t kPageSize = 16384;
 // disk.
 constexpr std::int64_t kMovePeriodNs = 2 * kNsPerSecond / 5;
 
-constexpr const char* kSchema = R"(
+constexpr const char* kTablesOf1 = R"(
 CREATE TABLE schema_version (version INTEGER NOT NULL);
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE chunk (
@@ -42,6 +42,10 @@ CREATE TABLE event (
   occurrence INTEGER,
   json TEXT NOT NULL,
   checksum INTEGER NOT NULL);
+)";
+
+// What schema 3 added.
+constexpr const char* kTablesOf3 = R"(
 CREATE TABLE command (
   id INTEGER PRIMARY KEY,
   t_ns INTEGER NOT NULL,
@@ -58,6 +62,10 @@ CREATE TABLE attachment (
   name TEXT PRIMARY KEY,
   checksum INTEGER NOT NULL,
   bytes BLOB NOT NULL);
+)";
+
+// What schema 4 added.
+constexpr const char* kTablesOf4 = R"(
 CREATE TABLE seal (
   id INTEGER PRIMARY KEY,
   t_ns INTEGER NOT NULL,
@@ -95,12 +103,17 @@ Result<void> BeginRecord(Database* database, const SessionFileOptions& options) 
     sql += fmt::format("PRAGMA max_page_count={};",
                        std::max<std::int64_t>(options.max_bytes / kPageSize, 1));
   }
-  sql += "BEGIN;" + std::string(kSchema) +
+  sql += "BEGIN;" + ListTables(kSchemaVersion) +
          fmt::format("INSERT INTO schema_version VALUES ({});", kSchemaVersion);
   return database->Execute(sql);
 }
 
 }  // namespace
+
+std::string ListTables(std::int64_t schema) {
+  return std::string(kTablesOf1) + (schema >= 3 ? kTablesOf3 : "") +
+         (schema >= 4 ? kTablesOf4 : "");
+}
 
 Result<SessionFile> SessionFile::Create(const SessionFileOptions& options, const Meta& meta) {
   Result<WriteClaim> claim = WriteClaim::Make(options.path, options.replaces);

@@ -25,6 +25,9 @@ inline constexpr std::int64_t kApplicationId = 0x48564153;  // "HVAS", in the fi
 // As many ticks are compressed together at most: those of two hands between two transactions.
 inline constexpr std::int64_t kChunkTicks = 1000;
 
+/** The statements that make the tables of a record of a schema, from 1 to kSchemaVersion. */
+[[nodiscard]] std::string ListTables(std::int64_t schema);
+
 /** Keys that the recorder adds when it ends; a record without them was cut short. */
 inline constexpr const char* kMetaDigest = "digest";
 inline constexpr const char* kMetaDropped = "dropped_ticks";

@@ -211,21 +211,39 @@ Result<Json> Hub::DoUse(const protocol::UseCommand& command) {
   return Done(workbench_->hands().UseDevice(command.hand, command.device, command.scale));
 }
 
-Result<Json> Hub::DoRecord(const protocol::RecordCommand& command) {
-  WorkbenchRecordings& recordings = workbench_->recordings();
-  return Done(command.on ? recordings.Start(command.name) : recordings.Stop());
+Result<Json> Hub::DoLater(const Caller& caller, std::function<Result<void>()> work) {
+  workbench_->recordings().PostDiskWork(
+      [bench = workbench_, to = caller.id, id = IdOf(caller.command), work = std::move(work)] {
+        bench->events().Publish(MakeDeferredReply(to, id, Done(work())));
+      });
+  return MakeDeferredResult();
 }
 
-Result<Json> Hub::DoRenameRecording(const protocol::RenameRecordingCommand& command) {
-  return Done(workbench_->recordings().Rename(command.recording, command.name));
+Result<Json> Hub::DoRecord(const Caller& caller, const protocol::RecordCommand& command) {
+  return DoLater(caller, [recordings = &workbench_->recordings(), command] {
+    return command.on ? recordings->Start(command.name) : recordings->Stop();
+  });
 }
 
-Result<Json> Hub::DoShareRecording(const protocol::ShareRecordingCommand& command) {
-  return Done(workbench_->recordings().Share(command.recording, command.shared));
+Result<Json> Hub::DoRenameRecording(const Caller& caller,
+                                    const protocol::RenameRecordingCommand& command) {
+  return DoLater(caller, [recordings = &workbench_->recordings(), command] {
+    return recordings->Rename(command.recording, command.name);
+  });
 }
 
-Result<Json> Hub::DoDeleteRecording(const protocol::DeleteRecordingCommand& command) {
-  return Done(workbench_->recordings().Delete(command.recording));
+Result<Json> Hub::DoShareRecording(const Caller& caller,
+                                   const protocol::ShareRecordingCommand& command) {
+  return DoLater(caller, [recordings = &workbench_->recordings(), command] {
+    return recordings->Share(command.recording, command.shared);
+  });
+}
+
+Result<Json> Hub::DoDeleteRecording(const Caller& caller,
+                                    const protocol::DeleteRecordingCommand& command) {
+  return DoLater(caller, [recordings = &workbench_->recordings(), command] {
+    return recordings->Delete(command.recording);
+  });
 }
 
 template <typename Fields>

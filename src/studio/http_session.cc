@@ -1,10 +1,18 @@
 #include "studio/http_session.h"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
+#include <stop_token>
 #include <utility>
+#include <vector>
 
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -13,11 +21,14 @@
 #include "base/clock.h"
 #include "base/error_name.h"
 #include "base/parse_json.h"
+#include "base/regular_file.h"
+#include "studio/answer_lanes.h"
 #include "studio/event_json.h"
 #include "studio/header_value.h"
 #include "studio/json_fields.h"
 #include "studio/responses.h"
 #include "studio/socket_session.h"
+#include "studio/upload_file.h"
 
 namespace hvas::studio {
 namespace {
@@ -193,14 +204,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       wire().expires_never();
       StartSocketSession(std::move(connection_), shared_, visitor, header_->get());
     } else if (method == http::verb::get) {
-      try {
-        Reply(MakeApiResponse(shared_->workbench, DecodePercent(path), visitor,
-                              shared_->hub.IsShielded(visitor.role),
-                              FieldOf(header_->get(), http::field::accept_encoding)));
-      } catch (const std::exception& failed) {
-        Refuse(http::status::internal_server_error,
-               {ErrorCode::kInternal, failed.what(), std::string(path), "reload the page"});
-      }
+      ReplyLater(visitor, DecodePercent(path));
     } else if (path == "/api/upload" && method == http::verb::post) {
       ReadUpload(visitor);
     } else if (path == "/api/end_sharing" && method == http::verb::post) {
@@ -215,6 +219,47 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     } else {
       Refuse(http::status::not_found,
              {ErrorCode::kNotFound, "there is no such resource", std::string(path), ""});
+    }
+  }
+
+  /** Makes the response on another thread, and sends it when it is there. */
+  void ReplyLater(const Visitor& visitor, std::string path) {
+    const bool is_of_records = path.starts_with("/api/recording");
+    const std::string accepted(FieldOf(header_->get(), http::field::accept_encoding));
+    // The session is used and freed by the network thread alone: the job only carries it.
+    auto job = [self = shared_from_this(), path, accepted, visitor, bench = shared_->workbench,
+                is_shielded =
+                    shared_->hub.IsShielded(visitor.role)](const std::stop_token& stop) mutable {
+      auto made = TryMakeResponse(bench, path, visitor, is_shielded, accepted, stop);
+      const auto executor = self->connection_.get_executor();
+      asio::post(executor, [self = std::move(self), made = std::move(made)]() mutable {
+        self->Reply(std::move(made));
+      });
+    };
+    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor.is_owner, is_of_records),
+                                 std::move(job))) {
+      Refuse(http::status::service_unavailable,
+             {ErrorCode::kOutOfResource, "too many requests wait for an answer", std::move(path),
+              "try again in a few seconds"});
+    }
+  }
+
+  static Result<Response> TryMakeResponse(Workbench* bench, const std::string& path,
+                                          const Visitor& visitor, bool is_shielded,
+                                          const std::string& accepted,
+                                          const std::stop_token& stop) {
+    try {
+      auto made = MakeApiResponse(bench, path, visitor, is_shielded, accepted, stop);
+      if (made && made->file) {
+        auto opened = RegularFile::Open(*made->file);
+        if (!opened) {
+          return Unexpected(opened.error());
+        }
+        made->owner = std::make_shared<const RegularFile>(std::move(*opened));
+      }
+      return made;
+    } catch (const std::exception& failed) {
+      return Fail(ErrorCode::kInternal, failed.what(), path, "reload the page");
     }
   }
 
@@ -326,28 +371,66 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!folder) {
       return Refuse(http::status::too_many_requests, folder.error());
     }
-    const std::filesystem::path file = *folder / name;
-    auto parser = std::make_shared<http::request_parser<http::file_body>>(std::move(*header_));
-    parser->body_limit(shared_->options.max_upload);
-    error_code error;
-    parser->get().body().open(file.c_str(), beast::file_mode::write_new, error);
-    if (error) {
-      shared_->hub.uploads().GiveUp(link);
-      return Refuse(
-          http::status::insufficient_storage,
-          {ErrorCode::kOutOfResource, "the file cannot be saved", name, "free disk space"});
-    }
+    auto upload = std::make_shared<Upload>(std::move(*header_), link, *folder / name);
+    upload->parser.body_limit(shared_->options.max_upload);
     wire().expires_after(kUploadTime);
-    http::async_read(
-        connection_, buffer_, *parser,
-        [self = shared_from_this(), parser, link, file, name](error_code read, std::size_t) {
-          parser->get().body().close();
-          if (read) {
-            self->shared_->hub.uploads().GiveUp(link);
-            return self->RefuseBody(read);
-          }
-          self->FinishUpload(link, file, name);
+    SaveUpload(std::move(upload), true);
+  }
+
+  /** A body on its way into a file. */
+  struct Upload {
+    Upload(Header&& header, std::uint32_t of, std::filesystem::path path)
+        : link(of), file(std::move(path)), parser(std::move(header)) {}
+
+    std::uint32_t link;
+    UploadFile file;
+    http::request_parser<http::buffer_body> parser;
+    std::vector<std::byte> piece = std::vector<std::byte>(64 << 10);  // [bytes]: a choice.
+    std::size_t received{0};                                          ///< Bytes in the piece.
+  };
+
+  /** The disk lane makes the file, or adds the piece that was received; then the network thread
+   reads the next one. */
+  void SaveUpload(std::shared_ptr<Upload> upload, bool is_first) {
+    shared_->lanes->Post(
+        AnswerLanes::Lane::kDisk, [self = shared_from_this(), upload = std::move(upload),
+                                   is_first](const std::stop_token& /*stop*/) mutable {
+          auto saved = is_first
+                           ? upload->file.Create()
+                           : upload->file.Add(std::span(upload->piece).first(upload->received));
+          const auto executor = self->connection_.get_executor();
+          asio::post(executor, [self = std::move(self), upload = std::move(upload),
+                                saved = std::move(saved)]() mutable {
+            if (saved) {
+              self->ReadUploadPiece(std::move(upload));
+            } else {
+              self->shared_->hub.uploads().GiveUp(upload->link);
+              self->Refuse(http::status::insufficient_storage, saved.error());
+            }
+          });
         });
+  }
+
+  void ReadUploadPiece(std::shared_ptr<Upload> upload) {
+    if (upload->parser.is_done()) {
+      upload->file.Close();
+      return FinishUpload(upload->link, upload->file.path(),
+                          upload->file.path().filename().string());
+    }
+    auto& body = upload->parser.get().body();
+    body.data = upload->piece.data();
+    body.size = upload->piece.size();
+    auto& parser = upload->parser;
+    http::async_read(connection_, buffer_, parser,
+                     [self = shared_from_this(), upload = std::move(upload)](error_code error,
+                                                                             std::size_t) mutable {
+                       if (error && error != http::error::need_buffer) {
+                         self->shared_->hub.uploads().GiveUp(upload->link);
+                         return self->RefuseBody(error);
+                       }
+                       upload->received = upload->piece.size() - upload->parser.get().body().size;
+                       self->SaveUpload(std::move(upload), false);
+                     });
   }
 
   void FinishUpload(std::uint32_t link, const std::filesystem::path& file,
@@ -384,7 +467,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                     answer.error());
     }
     if (answer->file) {
-      return SendFile(*answer->file, answer->type);
+      return SendFile(*answer->file,
+                      std::static_pointer_cast<const RegularFile>(std::move(answer->owner)),
+                      answer->type);
     }
     http::response<http::span_body<const char>> response(http::status::ok, 11);
     response.set(http::field::content_type, answer->type);
@@ -410,17 +495,60 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   /** For saving: it may be large. */
-  void SendFile(const std::filesystem::path& file, const std::string& type) {
-    http::response<http::file_body> response(http::status::ok, 11);
-    error_code failed;
-    response.body().open(file.c_str(), boost::beast::file_mode::scan, failed);
-    if (failed) {
-      return Refuse(http::status::not_found,
-                    {ErrorCode::kNotFound, failed.message(), file.filename().string(), ""});
-    }
+  void SendFile(const std::filesystem::path& file, std::shared_ptr<const RegularFile> opened,
+                const std::string& type) {
+    http::response<http::empty_body> response(http::status::ok, 11);
     response.set(http::field::content_type, type);
     response.set(http::field::content_disposition, MakeAttachmentValue(file.filename().string()));
-    Send(std::move(response));
+    AddCommonFields(&response);
+    response.content_length(opened->size());
+    wire().expires_after(shared_->options.patience);
+    auto kept = std::make_shared<http::response<http::empty_body>>(std::move(response));
+    auto header = std::make_shared<http::response_serializer<http::empty_body>>(*kept);
+    http::async_write_header(
+        connection_, *header,
+        [self = shared_from_this(), kept, header, opened](error_code error, std::size_t) {
+          if (!error) {
+            self->SendPiece(opened, 0, kept->keep_alive());
+          }
+        });
+  }
+
+  /** Sends a file from some byte on: the disk lane reads a piece, the network thread writes it. */
+  void SendPiece(std::shared_ptr<const RegularFile> file, std::uintmax_t from, bool keeps_alive) {
+    constexpr std::size_t kPiece = 256 << 10;  // [bytes]: a few milliseconds of a slow disk.
+    if (from >= file->size()) {
+      return EndReply(keeps_alive);
+    }
+    const std::size_t size = std::min<std::uintmax_t>(kPiece, file->size() - from);
+    shared_->lanes->Post(
+        AnswerLanes::Lane::kDisk, [self = shared_from_this(), file = std::move(file), from, size,
+                                   keeps_alive](const std::stop_token& /*stop*/) mutable {
+          auto piece = std::make_shared<std::string>(size, '\0');
+          const auto read =
+              ::pread(file->descriptor(), piece->data(), size, static_cast<off_t>(from));
+          piece->resize(static_cast<std::size_t>(std::max<ssize_t>(read, 0)));
+          const auto executor = self->connection_.get_executor();
+          asio::post(executor, [self = std::move(self), file = std::move(file), piece, from,
+                                keeps_alive]() mutable {
+            self->WritePiece(std::move(file), std::move(piece), from, keeps_alive);
+          });
+        });
+  }
+
+  void WritePiece(std::shared_ptr<const RegularFile> file, std::shared_ptr<std::string> piece,
+                  std::uintmax_t from, bool keeps_alive) {
+    if (piece->empty()) {  // The file became shorter: the client sees that the rest is missing.
+      return wire().close();
+    }
+    ExpireAfterSending(piece->size());
+    asio::async_write(connection_, asio::buffer(*piece),
+                      [self = shared_from_this(), file = std::move(file), piece, from, keeps_alive](
+                          error_code error, std::size_t sent) mutable {
+                        if (!error) {
+                          self->SendPiece(std::move(file), from + sent, keeps_alive);
+                        }
+                      });
   }
 
   void SendJson(http::status status, const Json& json) {
@@ -442,35 +570,46 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   template <typename Body>
-  void Send(http::response<Body> response) {
-    response.set("Content-Security-Policy", ToBeast(kContentSecurity));
-    response.set("Cross-Origin-Opener-Policy", "same-origin");
-    response.set("Cross-Origin-Embedder-Policy", "require-corp");
-    response.set("Cross-Origin-Resource-Policy", "same-origin");
-    response.set("X-Content-Type-Options", "nosniff");
-    response.set("Referrer-Policy", "no-referrer");
-    for (auto field = response.begin(); field != response.end();) {
-      field = IsHeaderValue(ToView(field->value())) ? std::next(field) : response.erase(field);
+  void AddCommonFields(http::response<Body>* response) const {
+    response->set("Content-Security-Policy", ToBeast(kContentSecurity));
+    response->set("Cross-Origin-Opener-Policy", "same-origin");
+    response->set("Cross-Origin-Embedder-Policy", "require-corp");
+    response->set("Cross-Origin-Resource-Policy", "same-origin");
+    response->set("X-Content-Type-Options", "nosniff");
+    response->set("Referrer-Policy", "no-referrer");
+    for (auto field = response->begin(); field != response->end();) {
+      field = IsHeaderValue(ToView(field->value())) ? std::next(field) : response->erase(field);
     }
-    response.keep_alive(!is_refused_ && !is_last_);
-    response.prepare_payload();
-    const std::chrono::duration<double> long_enough(
-        static_cast<double>(response.payload_size().value_or(0)) / kSlowest);
+    response->keep_alive(!is_refused_ && !is_last_);
+  }
+
+  void ExpireAfterSending(std::uint64_t bytes) {
+    const std::chrono::duration<double> long_enough(static_cast<double>(bytes) / kSlowest);
     wire().expires_after(shared_->options.patience +
                          std::chrono::duration_cast<std::chrono::milliseconds>(long_enough));
+  }
+
+  template <typename Body>
+  void Send(http::response<Body> response) {
+    AddCommonFields(&response);
+    response.prepare_payload();
+    ExpireAfterSending(response.payload_size().value_or(0));
     auto kept = std::make_shared<http::response<Body>>(std::move(response));
     http::async_write(connection_, *kept,
                       [self = shared_from_this(), kept](error_code error, std::size_t) {
                         self->owner_.reset();
-                        if (error) {
-                          return;
-                        }
-                        if (kept->keep_alive()) {
-                          self->ReadHeader();
-                        } else {
-                          self->End();
+                        if (!error) {
+                          self->EndReply(kept->keep_alive());
                         }
                       });
+  }
+
+  void EndReply(bool keeps_alive) {
+    if (keeps_alive) {
+      ReadHeader();
+    } else {
+      End();
+    }
   }
 
   /** Reads and discards the rest of the request for a while: closing with unread data would reset

@@ -252,9 +252,45 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
     result = Execute(id, *command, now_ns);
   }
   NoteCommand(id, found->second, command.value_or(Json::object()), result, now_ns);
+  SendReply(link, command, result);
+}
+
+void Hub::SendReply(ClientLink* link, const Result<Json>& command, const Result<Json>& result) {
   if (!result || !result->is_discarded()) {
     link->SendText(Print(MakeReply(command ? IdOf(*command) : Json(nullptr), result)));
   }
+}
+
+bool Hub::TrySwitchForcesOff(const std::string& id, std::string_view text, std::int64_t now_ns) {
+  constexpr std::size_t kLongest = 1000;  // [bytes] of such a command: a choice.
+  if (text.size() > kLongest || text.find("forces") == std::string_view::npos) {
+    return false;
+  }
+  const Result<Json> command = ParseCommand(text);
+  if (!command || !IsForcesOff(*command) || workbench_->live().forces_off()) {
+    return false;
+  }
+  workbench_->live().SetForcesOff(true);
+  if (const auto found = clients_.find(id); found != clients_.end()) {
+    ClientLink* const link = found->second.link;
+    const Result<Json> result = Execute(id, *command, now_ns);
+    NoteCommand(id, found->second, *command, result, now_ns);
+    SendReply(link, command, result);
+  }
+  return true;
+}
+
+bool Hub::TryRefuseForcesOn(const std::string& id, std::string_view text) {
+  const auto found = clients_.find(id);
+  const Result<Json> command = ParseCommand(text);
+  if (found == clients_.end() || !command || TextAt(*command, "command").value_or("") != "forces" ||
+      IsForcesOff(*command)) {
+    return false;
+  }
+  SendReply(found->second.link, command,
+            Fail(ErrorCode::kInvalid, "the forces were switched off meanwhile", "forces",
+                 "switch them on again"));
+  return true;
 }
 
 Result<Json> Hub::Execute(const std::string& id, const Json& command, std::int64_t now_ns) {

@@ -87,6 +87,16 @@ class Hub {
   /** Removes all clients without notice, when the server ends. */
   void DropClients() { clients_.clear(); }
 
+  /** Executes and replies to a command that switches the forces off while they are on, before
+   anything else that waits: it sets what the haptic thread reads before it looks at who the client
+   is, or at how many commands it has sent. Any client may do this. @returns false for any other
+   message, which is left to OnText(). */
+  bool TrySwitchForcesOff(const std::string& id, std::string_view text, std::int64_t now_ns);
+
+  /** Refuses a command that would switch the forces on, which was sent before they were switched
+   off and is executed only now. @returns false for any other message. */
+  bool TryRefuseForcesOn(const std::string& id, std::string_view text);
+
   /** Executes a command and replies to it. */
   void OnText(const std::string& id, std::string_view text, std::int64_t now_ns);
   void OnBinary(const std::string& id, std::string_view bytes);
@@ -172,10 +182,15 @@ class Hub {
   Result<Json> DoHands(const protocol::HandsCommand& command);
   Result<Json> DoDevices();
   Result<Json> DoUse(const protocol::UseCommand& command);
-  Result<Json> DoRecord(const protocol::RecordCommand& command);
-  Result<Json> DoRenameRecording(const protocol::RenameRecordingCommand& command);
-  Result<Json> DoShareRecording(const protocol::ShareRecordingCommand& command);
-  Result<Json> DoDeleteRecording(const protocol::DeleteRecordingCommand& command);
+  /** Leaves what accesses the disk to another thread, and the reply until then. */
+  Result<Json> DoLater(const Caller& caller, std::function<Result<void>()> work);
+  Result<Json> DoRecord(const Caller& caller, const protocol::RecordCommand& command);
+  Result<Json> DoRenameRecording(const Caller& caller,
+                                 const protocol::RenameRecordingCommand& command);
+  Result<Json> DoShareRecording(const Caller& caller,
+                                const protocol::ShareRecordingCommand& command);
+  Result<Json> DoDeleteRecording(const Caller& caller,
+                                 const protocol::DeleteRecordingCommand& command);
   template <typename Fields>
   Result<Json> DoEdit(const Fields& command);
   Result<Json> DoMeasure(const protocol::MeasureCommand& command);
@@ -193,6 +208,7 @@ class Hub {
   void BroadcastStudyState();
   void SendTo(const Client& client, const Json& event, const std::string& text);
 
+  void SendReply(ClientLink* link, const Result<Json>& command, const Result<Json>& result);
   [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);

@@ -13,17 +13,9 @@
 #include "session/session_recorder.h"
 #include "studio/json.h"
 #include "studio/open_scene.h"
+#include "studio/record_parts.h"
 
 namespace hvas::studio {
-
-/** Attachments of a record from which a page can play it. */
-inline constexpr const char* kSceneAttachment = "scene.json";
-inline constexpr const char* kGlbAttachment = "model.glb";
-inline constexpr const char* kClientEventKind =
-    "told";                                       ///< Kind of events in the form that clients got.
-inline constexpr const char* kNameMeta = "name";  ///< Metadata: display name.
-/** Metadata: OpenScene::digest of the product. */
-inline constexpr const char* kProductDigestMeta = "product_digest";
 
 /** A recording in progress: one scene, through all live runs that follow one another. */
 class Recording final : public simulation::Sink {

@@ -14,9 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/parse_json.h"
-#include "record/reader.h"
 #include "studio/json_fields.h"
-#include "studio/recording.h"
 #include "studio/state_folder.h"
 
 namespace hvas::studio {
@@ -25,7 +23,6 @@ namespace {
 constexpr const char* kSuffix = ".hvasrec";
 constexpr const char* kNamesFile = "names.json";
 constexpr const char* kSharedFile = "shared.json";  // Digest of the product, by id.
-constexpr std::int64_t kNsPerMs = 1'000'000;        // A definition.
 
 /** Makes the stem of a file name from a product's name: letters, digits and dashes. */
 std::string MakeStem(const std::string& name) {
@@ -41,86 +38,6 @@ std::string MakeStem(const std::string& name) {
     }
   }
   return stem.empty() ? "session" : stem;
-}
-
-std::string TextOf(const record::Meta& meta, const std::string& key) {
-  const auto found = meta.find(key);
-  return found == meta.end() ? "" : found->second;
-}
-
-Json DescribeFile(const std::string& id, const std::filesystem::path& file, std::uintmax_t bytes) {
-  auto reader = record::Reader::Open(file);
-  if (!reader) {
-    return nullptr;
-  }
-  const record::Meta& meta = reader->meta();
-  const std::string name = TextOf(meta, kNameMeta);
-  const std::string product = TextOf(meta, "product");
-  const std::int64_t started_ns = std::atoll(TextOf(meta, record::kMetaStarted).c_str());
-  return {{"id", id},
-          {"name", name.empty() ? product : name},
-          {"product", product},
-          {"started_unix_ms", started_ns / kNsPerMs},
-          {"duration_s", 1e-9 * static_cast<double>(reader->ReadLength().value_or(0))},
-          {"is_complete", reader->is_complete()},
-          {"bytes", bytes}};
-}
-
-/** Accumulates the results of each part's holds from the events "dropped". */
-class Results {
- public:
-  void Add(const Json& dropped, const std::vector<std::string>& paths) {
-    const auto occurrence = IndexOr(dropped, "occurrence", record::kNoOccurrence);
-    Json& result = FindOrAdd(occurrence, paths);
-    const Json& metrics = dropped.at("metrics");
-    const auto add = [&](const char* key, const char* from, double unit) {
-      result[key] = result[key].get<double>() + unit * NumberOr(metrics, from, 0);
-    };
-    const auto keep_largest = [&](const char* key, const char* from) {
-      result[key] = std::max(result[key].get<double>(), NumberOr(metrics, from, 0));
-    };
-    result["is_seated"] = FlagOr(dropped, "was_seated", false);
-    add("time_s", "time_s", 1);
-    add("path_m", "path_mm", 1e-3);
-    add("collisions", "collisions", 1);
-    keep_largest("peak_true_n", "peak_true_n");
-    keep_largest("peak_felt_n", "peak_felt_n");
-    keep_largest("insertion_mm", "insertion_mm");
-  }
-
-  [[nodiscard]] const Json& list() const { return list_; }
-
- private:
-  Json& FindOrAdd(std::uint32_t occurrence, const std::vector<std::string>& paths) {
-    for (Json& result : list_) {
-      if (result["occurrence"] == occurrence) {
-        return result;
-      }
-    }
-    list_.push_back({{"occurrence", occurrence},
-                     {"path", occurrence < paths.size() ? paths[occurrence] : ""},
-                     {"is_seated", false},
-                     {"time_s", 0.0},
-                     {"path_m", 0.0},
-                     {"peak_true_n", 0.0},
-                     {"peak_felt_n", 0.0},
-                     {"collisions", 0.0},
-                     {"insertion_mm", 0.0}});
-    return list_.back();
-  }
-
-  Json list_ = Json::array();
-};
-
-std::vector<std::string> PathsOf(const record::Meta& meta) {
-  std::vector<std::string> paths;
-  const Json parts = ParseJson<Json>(TextOf(meta, "model_json"));
-  if (parts.is_array()) {
-    for (const Json& part : parts) {
-      paths.push_back(TextOr(part, "path", ""));
-    }
-  }
-  return paths;
 }
 
 /** Whether an entry of the folder may be a record: a regular file, because a link could lead to any
@@ -181,9 +98,14 @@ Result<std::filesystem::path> RecordingShelf::MakePath(const std::string& produc
   return file;
 }
 
-Json RecordingShelf::List(const std::optional<std::string>& shared_of) {
-  const std::lock_guard lock(mutex_);
+Json RecordingShelf::List(const std::optional<std::string>& shared_of,
+                          const std::stop_token& stop) {
   std::map<std::string, Entry> entries;
+  std::map<std::string, Entry> known;
+  {
+    const std::lock_guard lock(mutex_);
+    known = entries_;
+  }
   std::error_code failed;
   for (const auto& item : std::filesystem::directory_iterator(folder_, failed)) {
     if (!IsRecordFile(item)) {
@@ -191,13 +113,21 @@ Json RecordingShelf::List(const std::optional<std::string>& shared_of) {
     }
     const std::string id = item.path().stem().string();
     Entry entry{item.last_write_time(failed), item.file_size(failed), nullptr};
-    const auto known = entries_.find(id);
-    const bool is_same = known != entries_.end() && known->second.written == entry.written &&
-                         known->second.bytes == entry.bytes;
-    entry.description =
-        is_same ? known->second.description : DescribeFile(id, item.path(), entry.bytes);
+    const auto before = known.find(id);
+    const bool is_same = before != known.end() && before->second.written == entry.written &&
+                         before->second.bytes == entry.bytes;
+    if (is_same) {
+      entry.description = before->second.description;
+    } else if (auto summary = ReadSummary(item.path(), stop)) {
+      summary->erase("product_digest");
+      entry.description = *std::move(summary);
+    }
+    if (stop.stop_requested()) {
+      break;
+    }
     entries[id] = std::move(entry);
   }
+  const std::lock_guard lock(mutex_);
   entries_ = std::move(entries);
   const auto names = ReadNames();
   std::vector<Json> list;
@@ -229,75 +159,26 @@ Result<std::filesystem::path> RecordingShelf::Find(const std::string& id) const 
   return Fail(ErrorCode::kNotFound, "there is no such recording", id, "reload the list");
 }
 
-Result<record::Reader> RecordingShelf::Open(const std::string& id) const {
+Result<std::string> RecordingShelf::Read(const std::string& id, RecordPart part,
+                                         const std::stop_token& stop) const {
   const auto file = Find(id);
-  return file ? record::Reader::Open(*file) : Unexpected(file.error());
+  return file ? ReadInProcess(*file, part, stop) : Unexpected(file.error());
 }
 
-Result<Json> RecordingShelf::Describe(const std::string& id) const {
-  auto reader = Open(id);
-  if (!reader) {
-    return Unexpected(reader.error());
+Result<std::string> RecordingShelf::Describe(const std::string& id,
+                                             const std::stop_token& stop) const {
+  const auto file = Find(id);
+  if (!file) {
+    return Unexpected(file.error());
   }
-  const auto told = reader->ReadEvents();
-  if (!told) {
-    return Unexpected(told.error());
-  }
-  std::error_code failed;
-  Json json = DescribeFile(id, reader->path(), std::filesystem::file_size(reader->path(), failed));
   const auto names = ReadNames();
-  if (const auto given = names.find(id); given != names.end()) {
-    json["name"] = given->second;
-  }
+  const auto given = names.find(id);
+  RecordLabels labels{given != names.end() ? given->second : "", false};
   {
     const std::lock_guard lock(mutex_);
-    json["is_shared"] = HasShared(id);
+    labels.is_shared = HasShared(id);
   }
-  const std::string route = "/api/recording/" + id;
-  json["scene"] = route + "/scene";
-  json["glb"] = route + "/model.glb";
-  json["frames"] = route + "/frames";
-  Results results;
-  Json& events = json["events"] = Json::array();
-  for (const record::Event& event : *told) {
-    Json one = event.kind == kClientEventKind ? ParseJson<Json>(event.json) : Json();
-    if (!one.is_object()) {
-      continue;
-    }
-    if (TextOr(one, "event", "") == "dropped" && one.contains("metrics")) {
-      results.Add(one, PathsOf(reader->meta()));
-    }
-    one["t_ns"] = event.t_ns;
-    events.push_back(std::move(one));
-  }
-  json["results"] = results.list();
-  return json;
-}
-
-Result<std::string> RecordingShelf::ReadFrames(const std::string& id) const {
-  auto reader = Open(id);
-  if (!reader) {
-    return Unexpected(reader.error());
-  }
-  std::string bytes;
-  const auto read = reader->ForEachFrame({}, [&bytes](const record::Frame& frame) {
-    bytes.append(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
-    return true;
-  });
-  return read ? Result<std::string>(std::move(bytes)) : Unexpected(read.error());
-}
-
-Result<std::string> RecordingShelf::ReadAttachment(const std::string& id,
-                                                   const std::string& name) const {
-  auto reader = Open(id);
-  if (!reader) {
-    return Unexpected(reader.error());
-  }
-  const auto bytes = reader->ReadAttachment(name);
-  if (!bytes) {
-    return Unexpected(bytes.error());
-  }
-  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  return ReadInProcess(*file, RecordPart::kDescription, stop, labels);
 }
 
 Result<void> RecordingShelf::Delete(const std::string& id) {
@@ -367,14 +248,15 @@ bool RecordingShelf::IsShared(const std::string& id, const std::string& digest) 
 
 Result<void> RecordingShelf::Share(const std::string& id, const product::Product& product,
                                    const std::string& digest, bool is_shared) {
-  const auto reader = Open(id);
-  if (!reader) {
-    return Unexpected(reader.error());
+  const auto file = Find(id);
+  const auto summary = file ? ReadSummary(*file, {}) : Unexpected(file.error());
+  if (!summary) {
+    return Unexpected(summary.error());
   }
   // Records of before this metadata name the product only.
-  const std::string recorded = TextOf(reader->meta(), kProductDigestMeta);
+  const std::string recorded = TextOr(*summary, "product_digest", "");
   const bool is_of_product =
-      recorded.empty() ? TextOf(reader->meta(), "product") == product.name : recorded == digest;
+      recorded.empty() ? TextOr(*summary, "product", "") == product.name : recorded == digest;
   if (is_shared && !is_of_product) {
     return Fail(ErrorCode::kInvalid, "this recording is of another product", id,
                 "open the product of the recording, then share it");

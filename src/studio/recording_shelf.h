@@ -4,16 +4,20 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 
+#include "base/result.h"
 #include "product/product.h"
-#include "record/reader.h"
 #include "studio/json.h"
+#include "studio/record_process.h"
 
 namespace hvas::studio {
 
 /** The recordings in a folder, by id: the stem of the file's name. An id from a client is looked up
- among the files that are there, and never made part of a path. Any thread may call it. */
+ among the files that are there, and never made part of a path. Anybody may have made the files:
+ another process reads them (record_process.h). Any thread may call any function, except that the
+ network thread calls none, as all access the disk. */
 class RecordingShelf {
  public:
   /** @param folder  Made with the first recording; empty: recording is switched off. */
@@ -24,8 +28,10 @@ class RecordingShelf {
   [[nodiscard]] Result<std::filesystem::path> MakePath(const std::string& product) const;
 
   /** Makes the field "recordings" of docs/protocol.md, newest first. Other files are skipped.
-   @param shared_of  Digest of a product: those of it alone that are shared; none: all. */
-  [[nodiscard]] Json List(const std::optional<std::string>& shared_of = std::nullopt);
+   @param shared_of  Digest of a product: those of it alone that are shared; none: all.
+   @param stop  Leaves out what is not read by then. */
+  [[nodiscard]] Json List(const std::optional<std::string>& shared_of = std::nullopt,
+                          const std::stop_token& stop = {});
 
   /** Whether the owner has shared a recording of the product with this digest. Reads no file. */
   [[nodiscard]] bool IsShared(const std::string& id, const std::string& digest) const;
@@ -39,15 +45,14 @@ class RecordingShelf {
   /** Path of a recording. Errors: kNotFound. */
   [[nodiscard]] Result<std::filesystem::path> Find(const std::string& id) const;
 
-  /** Makes the description from which a page plays a recording (docs/protocol.md). */
-  [[nodiscard]] Result<Json> Describe(const std::string& id) const;
+  /** Makes the description from which a page plays a recording (docs/protocol.md), as JSON. Errors:
+   kNotFound; those of ReadInProcess(). */
+  [[nodiscard]] Result<std::string> Describe(const std::string& id,
+                                             const std::stop_token& stop = {}) const;
 
-  /** Reads all frames as clients got them, one after the other. */
-  [[nodiscard]] Result<std::string> ReadFrames(const std::string& id) const;
-
-  /** Reads an attachment. @param name  kSceneAttachment or kGlbAttachment. */
-  [[nodiscard]] Result<std::string> ReadAttachment(const std::string& id,
-                                                   const std::string& name) const;
+  /** Reads what a page plays of a recording. Errors: as Describe(). */
+  [[nodiscard]] Result<std::string> Read(const std::string& id, RecordPart part,
+                                         const std::stop_token& stop = {}) const;
 
   [[nodiscard]] Result<void> Delete(const std::string& id);
 
@@ -60,7 +65,6 @@ class RecordingShelf {
   [[nodiscard]] std::string MakeName(const std::string& product);
 
  private:
-  [[nodiscard]] Result<record::Reader> Open(const std::string& id) const;
   /** Names given by Rename, by id. */
   [[nodiscard]] std::map<std::string, std::string> ReadNames() const;
   [[nodiscard]] Result<void> WriteNames(const std::map<std::string, std::string>& names) const;

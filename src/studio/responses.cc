@@ -6,7 +6,7 @@
 
 #include "studio/assets.h"
 #include "studio/gzip.h"
-#include "studio/recording.h"
+#include "studio/record_parts.h"
 #include "studio/scene_json.h"
 
 namespace hvas::studio {
@@ -98,7 +98,7 @@ Result<Response> MakePathResponse(const Sweeper& sweeper, std::string_view name)
 
 /** @param rest  Path below /api/recordings/: id, and the resource of it. */
 Result<Response> MakeRecordingResponse(WorkbenchRecordings* recordings, std::string_view rest,
-                                       bool is_owner) {
+                                       bool is_owner, const std::stop_token& stop) {
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   const std::string id(rest.substr(0, slash));
   RecordingShelf* shelf = &recordings->shelf();
@@ -107,17 +107,17 @@ Result<Response> MakeRecordingResponse(WorkbenchRecordings* recordings, std::str
   }
   const std::string_view what = rest.substr(slash);
   if (what.empty()) {
-    const auto description = shelf->Describe(id);
-    return description ? MakeOwnedResponse(*description) : Unexpected(description.error());
+    return MakeOwnedResponse(kJsonType, shelf->Describe(id, stop));
   }
   if (what == "/frames") {
-    return MakeOwnedResponse("application/octet-stream", shelf->ReadFrames(id));
+    return MakeOwnedResponse("application/octet-stream",
+                             shelf->Read(id, RecordPart::kFrames, stop));
   }
   if (what == "/scene") {
-    return MakeOwnedResponse(kJsonType, shelf->ReadAttachment(id, kSceneAttachment));
+    return MakeOwnedResponse(kJsonType, shelf->Read(id, RecordPart::kScene, stop));
   }
   if (what == "/model.glb") {
-    return MakeOwnedResponse(kGlbType, shelf->ReadAttachment(id, kGlbAttachment));
+    return MakeOwnedResponse(kGlbType, shelf->Read(id, RecordPart::kModel, stop));
   }
   if (what == "/file") {
     auto file = shelf->Find(id);
@@ -159,7 +159,7 @@ Result<Response> MakeAssetResponse(std::string_view path, std::string_view accep
 
 Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
                                  const Visitor& visitor, bool is_shielded,
-                                 std::string_view accepted) {
+                                 std::string_view accepted, const std::stop_token& stop) {
   constexpr std::string_view kModel = "/api/model/";
   constexpr std::string_view kPath = "/api/path/";
   constexpr std::string_view kRecording = "/api/recording/";
@@ -171,7 +171,8 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
   }
   if (path == "/api/recordings") {
     return MakeOwnedResponse(workbench->recordings().shelf().List(
-        visitor.is_owner ? std::nullopt : std::optional(workbench->recordings().FindDigest())));
+        visitor.is_owner ? std::nullopt : std::optional(workbench->recordings().FindDigest()),
+        stop));
   }
   if (path.starts_with(kModel)) {
     return MakeModelResponse(workbench->live(), path.substr(kModel.size()), accepted);
@@ -181,7 +182,7 @@ Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
   }
   if (path.starts_with(kRecording)) {
     return MakeRecordingResponse(&workbench->recordings(), path.substr(kRecording.size()),
-                                 visitor.is_owner);
+                                 visitor.is_owner, stop);
   }
   return FailNotFound(path);
 }

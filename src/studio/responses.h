@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -28,14 +29,17 @@ struct Response {
 [[nodiscard]] Result<Response> MakeAssetResponse(std::string_view path, std::string_view accepted);
 
 /** Serves a resource below /api/ to a client with a session (docs/protocol.md). The owner gets all
- recordings, all others those of the open product that are shared.
+ recordings, all others those of the open product that are shared. May take long: not for the
+ network thread.
  @param is_shielded  The client is a participant of a study: it gets the scene without its fits, the
  meshes, and nothing else.
  @param accepted  Value of Accept-Encoding: scene and meshes go compressed to whoever takes gzip.
- Errors: kNotFound for unknown resources; those of reading a record. */
+ Errors: kNotFound for unknown resources; those of reading a record.
+ @param stop  Ends the reading of a record. */
 [[nodiscard]] Result<Response> MakeApiResponse(Workbench* workbench, std::string_view path,
                                                const Visitor& visitor, bool is_shielded = false,
-                                               std::string_view accepted = {});
+                                               std::string_view accepted = {},
+                                               const std::stop_token& stop = {});
 
 /** Decodes the percent-encoding (%xx) of a URL's path; malformed sequences stay as they are. */
 [[nodiscard]] std::string DecodePercent(std::string_view path);

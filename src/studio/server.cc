@@ -23,6 +23,7 @@ class Server::Impl {
         acceptor_(context_),
         timer_(context_),
         pause_(context_) {
+    shared_->lanes = &lanes_;
     workbench->on_event = [this](Json event) {
       asio::post(context_, [this, event = std::move(event)] { shared_->hub.Broadcast(event); });
     };
@@ -80,6 +81,10 @@ class Server::Impl {
     context_.stop();
     if (thread_.joinable()) {
       thread_.join();
+    }
+    lanes_.Stop();
+    if (shared_->access != nullptr) {
+      shared_->SaveAccessNow(shared_->access->Keep());
     }
     shared_->hub.DropClients();
     shared_->audit->Stop();
@@ -174,6 +179,7 @@ class Server::Impl {
   }
 
   asio::io_context context_{1};
+  AnswerLanes lanes_;  ///< Its jobs hold sessions, which use the context.
   std::shared_ptr<ServerShared> shared_;
   tcp::acceptor acceptor_;
   asio::steady_timer timer_;

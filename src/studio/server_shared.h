@@ -12,6 +12,7 @@
 #include <boost/beast/websocket/error.hpp>
 #include <fmt/format.h>
 
+#include "studio/answer_lanes.h"
 #include "studio/connection.h"
 #include "studio/server.h"
 
@@ -41,13 +42,22 @@ struct ServerShared {
   std::unique_ptr<Access> access;
   std::unique_ptr<asio::ssl::context> tls;  ///< Null: plain HTTP.
   std::shared_ptr<ConnectionTable> connections{std::make_shared<ConnectionTable>()};
+  AnswerLanes* lanes{nullptr};  ///< Outlives all sessions.
 
-  /** Saves the access control after a change; prints a warning the first time that this fails. */
+  /** Saves the access control after a change, in the background. */
   void SaveAccessState() {
+    lanes->Post(
+        AnswerLanes::Lane::kDisk,
+        [this, kept = access->Keep()](const std::stop_token& /*stop*/) { SaveAccessNow(kept); });
+  }
+
+  /** Prints a warning the first time that this fails. For the disk lane, and while there is none.
+   */
+  void SaveAccessNow(const SavedAccess& kept) {
     if (options.access_file.empty()) {
       return;
     }
-    const auto saved = SaveAccess(options.access_file, access->Keep());
+    const auto saved = SaveAccess(options.access_file, kept);
     if (!saved && std::exchange(can_save_access, false)) {
       fmt::print(stderr,
                  "warning: the links cannot be saved, so the next start makes new ones: {}\n",

@@ -104,22 +104,58 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   }
 
   void Read() {
+    is_reading_ = true;
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      self->is_reading_ = false;
       if (error) {
         self->Leave();
         return;
       }
-      const std::string message = beast::buffers_to_string(self->buffer_.data());
+      std::string message = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
-      if (self->socket_.got_text()) {
-        self->shared_->hub.OnText(self->id_, message, MonotonicNs());
-      } else {
-        self->shared_->hub.OnBinary(self->id_, message);
-      }
-      if (!self->is_closing_) {
-        self->Read();
-      }
+      self->Receive({std::move(message), self->socket_.got_text()});
     });
+  }
+
+  /** Looks for what may not wait; all else is handled in a later call, so that the messages that
+   have come from all clients are looked at before any of them is handled. */
+  void Receive(Message message) {
+    Hub& hub = shared_->hub;
+    if (message.is_text && hub.TrySwitchForcesOff(id_, message.bytes, MonotonicNs())) {
+      std::erase_if(received_, [&](const Message& one) {
+        return one.is_text && hub.TryRefuseForcesOn(id_, one.bytes);
+      });
+    } else {
+      received_.push_back(std::move(message));
+      PostHandle();
+    }
+    ReadOn();
+  }
+
+  /** Reads on unless so many messages wait that the client has to. */
+  void ReadOn() {
+    constexpr std::size_t kMostReceived = 16;  // A megabyte: a choice.
+    if (!is_closing_ && !is_reading_ && received_.size() < kMostReceived) {
+      Read();
+    }
+  }
+
+  void PostHandle() {
+    asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Handle(); });
+  }
+
+  void Handle() {
+    if (received_.empty() || is_closing_) {
+      return;
+    }
+    const Message message = std::move(received_.front());
+    received_.pop_front();
+    if (message.is_text) {
+      shared_->hub.OnText(id_, message.bytes, MonotonicNs());
+    } else {
+      shared_->hub.OnBinary(id_, message.bytes);
+    }
+    ReadOn();
   }
 
   void Push(Message message) {
@@ -158,7 +194,9 @@ class SocketSession final : public ClientLink, public std::enable_shared_from_th
   std::string cookie_;  ///< Cookie header of the browser.
   std::string id_;
   beast::flat_buffer buffer_;
-  std::deque<Message> queue_;
+  std::deque<Message> queue_;     ///< To be sent.
+  std::deque<Message> received_;  ///< To be handled.
+  bool is_reading_{false};
   std::size_t queued_{0};
   bool is_closing_{false};
 };

@@ -35,7 +35,8 @@ Workbench::~Workbench() {
 
 void Workbench::Stop() {
   worker_.RequestStop();
-  opener_.Cancel();      // after the flag is set, so that nothing else begins
+  opener_.Cancel();  // after the flag is set, so that nothing else begins
+  recordings_.StopDiskWork();
   recordings_.Finish();  // before anything that takes long
   live_.EndRun();
   sweeper_.Stop();

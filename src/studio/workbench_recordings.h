@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "base/job_thread.h"
 #include "base/result.h"
@@ -17,8 +20,8 @@
 namespace hvas::studio {
 
 /** Recordings of the work: the one in progress, which has one scene, and those on the shelf. Any
- thread may call any function; all but Finish() return at once, and leave slow work to the worker.
- */
+ thread may call any function; all but Finish() leave slow work to the worker. Those that access the
+ disk are called by PostDiskWork(). */
 class WorkbenchRecordings final : public SceneObserver {
  public:
   /** @param folder  See RecordingShelf. */
@@ -53,6 +56,14 @@ class WorkbenchRecordings final : public SceneObserver {
 
   [[nodiscard]] RecordingShelf& shelf() { return shelf_; }
 
+  /** Does some work of the disk on a thread of its own, after what was posted before. */
+  void PostDiskWork(std::function<void()> work) {
+    disk_.Post([work = std::move(work)](const std::stop_token& /*stop*/) { work(); });
+  }
+
+  /** Waits for the disk work that has begun, and does no more. */
+  void StopDiskWork() { disk_.Stop(); }
+
  private:
   void ConfigureRun(const OpenScene& scene, LiveOptions* live) override;
   [[nodiscard]] std::shared_ptr<Recording> recording() const;
@@ -68,6 +79,8 @@ class WorkbenchRecordings final : public SceneObserver {
 
   mutable std::mutex mutex_;              ///< Protects what follows.
   std::shared_ptr<Recording> recording_;  ///< Null while nothing is recorded.
+
+  JobThread disk_;  ///< The last member: the first that ends.
 };
 
 }  // namespace hvas::studio

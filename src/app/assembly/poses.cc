@@ -236,21 +236,24 @@ Result<std::map<std::uint32_t, OccurrenceId>> MatchParts(const record::Meta& met
                                                          const Product& product) {
   const auto found = meta.find("model_json");
   const Json parts = ParseJson<Json>(found != meta.end() ? found->second : "");
+  std::map<std::string_view, OccurrenceId> by_path;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    by_path.emplace(occurrence.path, occurrence.id);
+  }
   std::map<std::uint32_t, OccurrenceId> ids;
   for (const Json& part : parts.is_array() ? parts : Json::array()) {
     const bool is_known = part.is_object() && part.contains("path") && part["path"].is_string() &&
                           part.contains("id") && part["id"].is_number_unsigned();
     const std::string path = is_known ? part["path"].get<std::string>() : std::string();
-    const auto at = std::find_if(product.occurrences.begin(), product.occurrences.end(),
-                                 [&path](const auto& other) { return other.path == path; });
-    if (!is_known || at == product.occurrences.end() || !part.contains("shape_hash") ||
-        part["shape_hash"] != product.part_of(at->id).shape_hash) {
+    const auto at = by_path.find(path);
+    if (!is_known || at == by_path.end() || !part.contains("shape_hash") ||
+        part["shape_hash"] != product.part_of(at->second).shape_hash) {
       return Fail(ErrorCode::kInvalid,
                   fmt::format("the record belongs to another product: {} has no part \"{}\"",
                               product.source, path),
                   name, "export the file that was assembled in the session");
     }
-    ids[part["id"].get<std::uint32_t>()] = at->id;
+    ids[part["id"].get<std::uint32_t>()] = at->second;
   }
   return ids;
 }

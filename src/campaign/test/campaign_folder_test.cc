@@ -2,6 +2,8 @@
 
 #include "campaign/campaign_folder.h"
 
+#include <sys/stat.h>
+
 #include <barrier>
 #include <fstream>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "base/test/temporary_folder.h"
 #include "campaign/campaign_page.h"
 #include "campaign/run_campaign.h"
+#include "campaign/shard.h"
 #include "campaign/slurm.h"
 #include "campaign/summary.h"
 #include "campaign/table_file.h"
@@ -262,6 +265,27 @@ TEST_F(CampaignFolderTest, ATableThatCannotBeWrittenIsAnErrorAndTheShardsStay) {
   ASSERT_FALSE(summary);
   EXPECT_FALSE(summary.error().remedy.empty());
   EXPECT_TRUE(folder.ListMissing().empty());
+}
+
+TEST_F(CampaignFolderTest, AShardThatIsAPipeOrHasOtherTablesIsDamagedAndIsNeverWaitedFor) {
+  const CampaignFolder folder = MakeFolder("strange", MakePlan(50));
+  Run(folder, 1);
+  const std::filesystem::path pipe = folder.PathOf(0);
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::filesystem::path more = folder.PathOf(1);
+  auto database = record::Database::Open(more, record::Database::Mode::kCreate);
+  ASSERT_TRUE(database);
+  ASSERT_TRUE(database->Execute("CREATE VIEW more AS SELECT * FROM runs"));
+  for (const std::int64_t shard : {0, 1}) {
+    const auto rows = ReadShard(folder.PathOf(shard), folder.MakeKey(shard));
+    ASSERT_FALSE(rows) << shard;
+    EXPECT_EQ(rows.error().code, ErrorCode::kUnreadable);
+    EXPECT_NE(rows.error().message.find(shard == 0 ? "pipe" : "\"more\""), std::string::npos)
+        << rows.error().message;
+  }
+  std::filesystem::remove(pipe);  // Nothing is written over what is no file.
+  EXPECT_EQ(Run(folder, 1).calculated, 2);
 }
 
 TEST_F(CampaignFolderTest, AnotherPlanProgramOrProductIsRefused) {

@@ -143,10 +143,11 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   const Json list = bench_.recordings().shelf().List();
   EXPECT_EQ(testing::FindFault("RecordingList", list), "");
   const std::string id = list["recordings"][0]["id"];
-  const auto detail = bench_.recordings().shelf().Describe(id);
-  ASSERT_TRUE(detail.has_value());
-  EXPECT_EQ(testing::FindFault("RecordingDetail", *detail), "");
-  EXPECT_FALSE((*detail)["events"].empty());
+  const auto described = bench_.recordings().shelf().Describe(id);
+  ASSERT_TRUE(described.has_value()) << described.error().ToString();
+  const Json detail = Json::parse(*described);
+  EXPECT_EQ(testing::FindFault("RecordingDetail", detail), "");
+  EXPECT_FALSE(detail["events"].empty());
   const Json rename{{"command", "rename_recording"}, {"recording", id}, {"name", "Second"}};
   EXPECT_FALSE(Do(rename).is_null());
   EXPECT_FALSE(Do({{"command", "delete_recording"}, {"recording", id}}).is_null());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <stdexcept>
 
 #include <arpa/inet.h>
@@ -115,8 +116,14 @@ bool RawClient::Send(const Request& request) {
 }
 
 std::int64_t RawClient::ReceiveSome(char* bytes, std::size_t size) {
-  return tls_ != nullptr ? SSL_read(tls_.get(), bytes, static_cast<int>(size))
-                         : ::recv(socket_, bytes, size, 0);
+  if (tls_ != nullptr) {
+    return SSL_read(tls_.get(), bytes, static_cast<int>(size));
+  }
+  std::int64_t got = 0;
+  do {  // The end of a child process interrupts it.
+    got = ::recv(socket_, bytes, size, 0);
+  } while (got < 0 && errno == EINTR);
+  return got;
 }
 
 bool RawClient::Receive() {

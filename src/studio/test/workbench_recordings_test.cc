@@ -80,20 +80,20 @@ TEST_F(WorkbenchRecordingsTest, X14RecordingIsListedPlayedAndRunAgainBitForBit) 
   EXPECT_EQ((*listed)["is_complete"], true);
   EXPECT_GT((*listed)["duration_s"], 4);
 
-  const auto detail = bench_.recordings().shelf().Describe(id);
-  ASSERT_TRUE(detail) << detail.error().ToString();
-  ASSERT_EQ((*detail)["results"].size(), 1u);
-  const Json& result = (*detail)["results"][0];
+  const auto described = bench_.recordings().shelf().Describe(id);
+  ASSERT_TRUE(described) << described.error().ToString();
+  const Json detail = Json::parse(*described);
+  ASSERT_EQ(detail["results"].size(), 1u);
+  const Json& result = detail["results"][0];
   EXPECT_EQ(result["occurrence"], kPeg);
   EXPECT_EQ(result["is_seated"], true);
   EXPECT_GT(result["time_s"], 1);
   EXPECT_GT(result["path_m"], 0.05);
-  CheckFrames(*bench_.recordings().shelf().ReadFrames(id));
-  const auto scene = bench_.recordings().shelf().ReadAttachment(id, kSceneAttachment);
+  CheckFrames(*bench_.recordings().shelf().Read(id, RecordPart::kFrames));
+  const auto scene = bench_.recordings().shelf().Read(id, RecordPart::kScene);
   ASSERT_TRUE(scene);
   EXPECT_EQ(Json::parse(*scene)["occurrences"].size(), 2u);
-  EXPECT_EQ(*bench_.recordings().shelf().ReadAttachment(id, kGlbAttachment),
-            *bench_.live().scene()->glb);
+  EXPECT_EQ(*bench_.recordings().shelf().Read(id, RecordPart::kModel), *bench_.live().scene()->glb);
 
   auto reader = record::Reader::Open(*bench_.recordings().shelf().Find(id));
   ASSERT_TRUE(reader);
@@ -119,7 +119,7 @@ TEST_F(WorkbenchRecordingsTest, ChangeOfTheProductEndsTheRecording) {
   EXPECT_EQ((*ended)["on"], false);
   const auto described = bench_.recordings().shelf().Describe((*ended)["id"]);
   ASSERT_TRUE(described);
-  EXPECT_EQ((*described)["is_complete"], true);
+  EXPECT_EQ(Json::parse(*described)["is_complete"], true);
 }
 
 TEST_F(WorkbenchRecordingsTest, RecordingThatVanishesIsToldOfAndWorkGoesOn) {
@@ -159,7 +159,7 @@ TEST_F(WorkbenchRecordingsTest, RecordingsHaveNamesOfTheirOwnAndOthersWhenTheyAr
   }
   const auto name_of = [this](const std::string& id) -> std::string {
     const auto described = bench_.recordings().shelf().Describe(id);
-    return described ? (*described)["name"] : "";
+    return described ? Json::parse(*described)["name"] : "";
   };
   EXPECT_NE(name_of(ids[0]), name_of(ids[1]));
   const auto file = bench_.recordings().shelf().Find(ids[0]);
@@ -187,7 +187,7 @@ TEST_F(WorkbenchRecordingsTest, RecordingsAreFoundByTheirIdAlone) {
   for (const char* id : {"", ".", "..", "../../etc/passwd", "/etc/passwd", "a/b", "none"}) {
     EXPECT_FALSE(bench_.recordings().shelf().Find(id)) << id;
     EXPECT_FALSE(bench_.recordings().Delete(id)) << id;
-    EXPECT_FALSE(bench_.recordings().shelf().ReadFrames(id)) << id;
+    EXPECT_FALSE(bench_.recordings().shelf().Read(id, RecordPart::kFrames)) << id;
   }
 }
 
