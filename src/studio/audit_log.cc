@@ -36,8 +36,9 @@ bool Append(const std::filesystem::path& file, const std::string& line) {
   if (std::filesystem::file_size(file, failed) > AuditLog::kMaxBytes && !failed) {
     std::filesystem::rename(file, file.string() + ".1", failed);
   }
-  const Descriptor opened(::open(
-      file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR));
+  const Descriptor opened(
+      ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+             S_IRUSR | S_IWUSR));
   return opened.is_open() &&
          WriteAll(opened.value(), std::as_bytes(std::span<const char>(line))) == 0;
 }

@@ -25,11 +25,11 @@ ALLOWED = {
     "src/base/file_lock.cc": "OpenLocked() refuses what is no regular file, and does not wait",
     "src/base/file_cache.cc": "makes files of its own, with O_TMPFILE or O_EXCL",
     "src/base/scratch_folder.cc": "opens a folder, with O_DIRECTORY and O_NOFOLLOW",
+    "src/base/served_process.cc": "writes to /proc/self",
     "src/base/work_watch.cc": "reads /proc/self",
     "src/app/devices/doctor_checks.cc": "reads /proc and /sys",
     "src/app/recording/page_file.cc": "copies what was printed into a folder of its own",
     "src/cad/export_step.cc": "writes into a scratch folder",
-    "src/cad/process/worker_main.cc": "writes to /proc/self",
     "src/device/drivers/dynamic_library.cc": "loads what CheckRegularFile() has passed, and libraries of the system",
     "src/device/drivers/evdev_node.cc": "opens a device of the kernel, with O_NONBLOCK",
     "src/device/drivers/gamepad.cc": "reads /sys",
@@ -43,6 +43,7 @@ ALLOWED = {
     "src/simulation/realtime_thread.cc": "reads /sys",
     "src/studio/audit_log.cc": "opens a file of the user's own state folder, with O_NOFOLLOW",
     "src/studio/state_folder.cc": "opens files of the user's own state folder, with O_NOFOLLOW",
+    "src/studio/upload_file.cc": "makes a file of its own, with O_EXCL",
     "src/studio/tls.cc": "files that CheckRegularFile() has passed",
 }
 
