@@ -321,6 +321,9 @@ TEST_F(HubTest, RecordingsAreTheOwnersWhoeverHasTheLease) {
   const std::string a = JoinAs({Role::kOperator, true, 1}, &first);
   // It is not refused: what the disk says follows as the event "reply".
   EXPECT_TRUE(Ask(a, &first, {{"command", "delete_recording"}, {"recording", "x"}}).is_null());
+  const auto told = log_.Await("reply");
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(IsError((*told)["reply"], "not-found"));
 }
 
 TEST_F(HubTest, DeviceIsAnIndexOfTheHostsListAndEveryOtherOneIsAnsweredAlike) {
