@@ -122,15 +122,12 @@ Result<void> WorkbenchRecordings::Share(const std::string& id, bool is_shared) {
   if (!found) {
     return Unexpected(found.error());
   }
-  worker_->Post([this, id, is_shared, scene = *found](const std::stop_token& /*stop*/) {
-    if (const auto done = shelf_.Share(id, *scene->model->product, scene->digest, is_shared);
-        !done) {
-      events_->Publish(
-          {{"event", "failed"}, {"file", "recording"}, {"error", ToJson(done.error())}});
-    }
+  const OpenScene& scene = **found;
+  auto shared = shelf_.Share(id, *scene.model->product, scene.digest, is_shared);
+  if (shared) {
     events_->Publish({{"event", "recordings"}});
-  });
-  return {};
+  }
+  return shared;
 }
 
 std::string WorkbenchRecordings::FindDigest() const {

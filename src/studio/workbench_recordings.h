@@ -44,8 +44,8 @@ class WorkbenchRecordings final : public SceneObserver {
 
   [[nodiscard]] Result<void> Rename(const std::string& id, const std::string& name);
 
-  /** Shares a recording of the open product, or no more. Reports by the event "recordings" or
-   "failed". Errors: those of LiveScene::FindScene. */
+  /** Shares a recording of the open product, or no more; uses the disk. Reports by the event
+   "recordings". Errors: those of LiveScene::FindScene and of RecordingShelf::Share. */
   [[nodiscard]] Result<void> Share(const std::string& id, bool is_shared);
 
   /** Digest of the open product; empty: none is open. */
