@@ -15,6 +15,8 @@
 #include "studio/recording.h"
 #include "studio/test/protocol_schema.h"
 #include "studio/test/server_fixture.h"
+#include "study/protocol.h"
+#include "study/study_folder.h"
 
 namespace hvas::studio {
 namespace {
@@ -259,6 +261,74 @@ TEST_F(ServerAttackTest, GuestWithTheLeaseDoesNothingThatIsTheOwners) {
     }
   }
   EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
+}
+
+constexpr const char* kStudy = R"(
+format: hvas-study-1
+id: attack
+title: A peg
+product: peg
+part: peg
+languages: [en]
+consent: You may stop.
+conditions:
+  - {id: C1, name: Loose, method: hybrid, fit: H7/g6, instruction: Put it in.}
+blocks:
+  - {id: B1, conditions: [C1], order: given}
+)";
+
+/** The same server, which runs a study. */
+class StudyAttackTest : public ServerAttackTest {
+ protected:
+  void SetUp() override {
+    ServerTest::SetUp();
+    server_->Stop();
+    const auto protocol = study::ParseProtocol(kStudy, "attack.yaml");
+    ASSERT_TRUE(protocol) << protocol.error().ToString();
+    auto folder = study::StudyFolder::Create(study_.path() / "study", *protocol, 1);
+    ASSERT_TRUE(folder) << folder.error().ToString();
+    StudyDesk::Options options;
+    options.participant = "P01";
+    options.product = "peg.step";
+    options.unix_ms = [] { return std::int64_t{0}; };
+    auto desk = StudyDesk::Open(std::move(*folder), bench_.get(), std::move(options));
+    ASSERT_TRUE(desk) << desk.error().ToString();
+    desk_ = std::move(*desk);
+    ServerOptions served = MakePatient();
+    served.upload_folder = folder_;
+    served.desk = desk_.get();
+    server_ = std::make_unique<Server>(bench_.get(), std::vector<Example>(), served);
+    ASSERT_TRUE(server_->Start());
+    desk_->Start();
+  }
+
+  void TearDown() override { ServerTest::TearDown(); }
+
+  hvas::testing::TemporaryFolder study_;
+  std::unique_ptr<StudyDesk> desk_;
+};
+
+TEST_F(StudyAttackTest, ParticipantLearnsNothingThatTheStudyHidesAndDoesNothingElse) {
+  const auto experimenter = Join(Role::kOperator);
+  EXPECT_FALSE(AwaitEvent(experimenter.get(), "hello").is_null());
+  const std::set<std::string> allowed{"state",  "consent", "ready", "answer", "pick",
+                                      "status", "forces",  "take",  "release"};
+  for (const std::string& name : SendAll(CookieOf(Role::kParticipant), MakeAttacks())) {
+    EXPECT_TRUE(allowed.count(name) > 0) << name;
+  }
+  const auto participant = Join(Role::kParticipant);
+  const Json hello = AwaitEvent(participant.get(), "hello");
+  EXPECT_FALSE(hello["is_owner"]);
+  EXPECT_TRUE(hello["recording"].is_null());
+  for (const char* route : {"/api/recordings", "/api/recording/x", "/api/path/x.glb"}) {
+    EXPECT_EQ(Get(route, {{"Cookie", CookieOf(Role::kParticipant)}}).status, 404) << route;
+  }
+  EXPECT_EQ(Post("/api/upload?name=a.step", "x", {{"Cookie", CookieOf(Role::kParticipant)}}).status,
+            403);
+  // The experimenter is still there, and the forces go off for both.
+  EXPECT_TRUE(Command(participant.get(), {{"id", 1}, {"command", "forces"}, {"off", true}})["ok"]);
+  EXPECT_TRUE(bench_->live().forces_off());
+  EXPECT_TRUE(Command(experimenter.get(), {{"id", 1}, {"command", "status"}})["ok"]);
 }
 
 TEST_F(ServerAttackTest, LongMessagesEndTheConnectionAlone) {
