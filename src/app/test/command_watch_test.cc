@@ -72,7 +72,7 @@ TEST(CommandWatchTest, ThousandsOfTrianglesThatAreObjectsOfTheirOwnAreListedInTi
 
 /** Runs a command in a process of its own that watches it, and returns its exit status. */
 template <typename Work>
-int StatusOf(double limit_s, const Work& work) {
+int StatusWithin(double limit_s, const Work& work) {
   const pid_t child = ::fork();
   if (child == 0) {
     CommandWatch& watch = CommandWatch::Get();
@@ -88,11 +88,11 @@ int StatusOf(double limit_s, const Work& work) {
 }
 
 TEST(CommandWatchTest, CommandThatEndsInTimeHasItsOwnStatus) {
-  EXPECT_EQ(StatusOf(100, [](CommandWatch* /*watch*/) {}), 0);
+  EXPECT_EQ(StatusWithin(100, [](CommandWatch* /*watch*/) {}), 0);
 }
 
 TEST(CommandWatchTest, CommandThatHeedsNoRequestToStopIsEnded) {
-  EXPECT_EQ(StatusOf(0.01,
+  EXPECT_EQ(StatusWithin(0.01,
                      [](CommandWatch* /*watch*/) {
                        while (true) {
                          ::pause();
@@ -102,7 +102,7 @@ TEST(CommandWatchTest, CommandThatHeedsNoRequestToStopIsEnded) {
 }
 
 TEST(CommandWatchTest, CommandThatWasCutShortIsAFailureAlsoWhereNothingWasReported) {
-  EXPECT_EQ(StatusOf(0.01,
+  EXPECT_EQ(StatusWithin(0.01,
                      [](CommandWatch* watch) {
                        while (!watch->stop().stop_requested()) {
                          ::usleep(1000);
@@ -112,7 +112,7 @@ TEST(CommandWatchTest, CommandThatWasCutShortIsAFailureAlsoWhereNothingWasReport
 }
 
 TEST(CommandWatchTest, PeopleHaveTheirOwnTime) {
-  EXPECT_EQ(StatusOf(0.2,
+  EXPECT_EQ(StatusWithin(0.2,
                      [](CommandWatch* watch) {
                        watch->End();
                        ::usleep(1'500'000);
