@@ -238,7 +238,7 @@ std::vector<std::int64_t> CampaignFolder::ListMissing() const {
   std::vector<std::int64_t> missing;
   for (std::int64_t shard = 0; shard < plan_.CountShards(); ++shard) {
     std::error_code failed;
-    if (!std::filesystem::exists(PathOf(shard), failed)) {
+    if (!std::filesystem::is_regular_file(PathOf(shard), failed)) {
       missing.push_back(shard);
     }
   }
@@ -256,7 +256,7 @@ CampaignStatus FindStatus(const CampaignFolder& folder) {
   for (std::int64_t shard = 0; shard < status.shards; ++shard) {
     std::error_code failed;
     const auto written = std::filesystem::last_write_time(folder.PathOf(shard), failed);
-    if (failed) {
+    if (failed || !std::filesystem::is_regular_file(folder.PathOf(shard), failed)) {
       continue;
     }
     const RunRange runs = FindRuns(plan, shard);

@@ -4,10 +4,13 @@
 
 #include <cerrno>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/file_lock.h"
+#include "base/regular_file.h"
 
 namespace hvas::campaign {
 
@@ -31,6 +34,22 @@ Result<void> WithName(Result<void> done, const std::filesystem::path& file) {
   return Unexpected(std::move(error));
 }
 
+/** Whether a table may take the place of what has this name: nothing, or a database of SQLite, as
+ of a table before. Errors: kInvalid. */
+Result<void> CheckPlace(const std::filesystem::path& file) {
+  constexpr std::string_view kMagic = "SQLite format 3";  // Of https://sqlite.org/fileformat.html.
+  std::error_code failed;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, failed))) {
+    return {};
+  }
+  const auto begin = ReadFileHead(file, kMagic.size());
+  if (begin && *begin == kMagic) {
+    return {};
+  }
+  return Fail(ErrorCode::kInvalid, "the file is there, and is no table of runs", file.string(),
+              "choose another name with --table, or delete the file");
+}
+
 }  // namespace
 
 TableFile::TableFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -47,6 +66,9 @@ TableFile::~TableFile() {
 }
 
 Result<TableFile> TableFile::Create(const std::filesystem::path& file) {
+  if (const auto place = CheckPlace(file); !place) {
+    return Unexpected(place.error());
+  }
   auto state = std::make_unique<State>();
   state->file = file;
   state->unfinished = file.string() + ".unfinished";

@@ -234,12 +234,21 @@ Result<Access::Admission> Access::Admit(std::string_view token, std::string_view
                 "ask the user in control for a link of your own (\"Share\"), or start the studio "
                 "again with --new-links");
   }
-  browser = browser != nullptr ? browser : AddBrowser(link->role);
-  browser->role = link->role;
-  link->browser = IsSingleUse(link->role) ? browser->secret : "";
+  bool has_changed = browser == nullptr;
+  if (browser == nullptr) {
+    browser = AddBrowser(link->role);
+  } else if (browser->role != link->role && IsSingleUse(link->role) &&
+             !MakeVisitor(*browser).is_owner) {
+    browser->role = link->role;  // A viewers' link takes nothing from who has come by another one.
+    has_changed = true;
+  }
+  if (IsSingleUse(link->role) && link->browser != browser->secret) {
+    link->browser = browser->secret;
+    has_changed = true;
+  }
   constexpr int kCookieLifetime = 30 * 24 * 3600;  // [s], 30 days: a choice.
   return Admission{
-      MakeVisitor(*browser),
+      MakeVisitor(*browser), has_changed,
       fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", cookie_name_,
                   browser->secret, kCookieLifetime, is_tls_ ? "; Secure" : "")};
 }

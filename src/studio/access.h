@@ -91,7 +91,8 @@ struct SavedAccess {
 /** Access control of the server: the host names that it answers to, the origins that its pages may
  have, the tokens of links and the secrets of browser sessions. A link of an operator or participant
  admits one browser, which gets a session cookie and may use the link again; a viewer's link admits
- every browser that has it. Any thread may call it. */
+ every browser that has it, and takes nothing from one that has come by another link. Any thread may
+ call it. */
 class Access {
  public:
   /** Links, those that are printed among them; beyond it the oldest other one is removed. A choice.
@@ -119,7 +120,8 @@ class Access {
   /** Result of a token that was accepted. */
   struct Admission {
     Visitor visitor;
-    std::string set_cookie;  ///< Set-Cookie header for the admitted browser.
+    bool has_changed{false};  ///< Whether there is something to save.
+    std::string set_cookie;   ///< Set-Cookie header for the admitted browser.
   };
 
   /** Admits a browser by the token of a link.

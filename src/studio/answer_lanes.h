@@ -5,16 +5,20 @@
 #include <utility>
 
 #include "base/job_thread.h"
+#include "studio/access.h"
 
 namespace hvas::studio {
 
 /** Threads on which the server does what may take longer than a millisecond, so that the network
  thread never waits: forces off comes by it. What one client asks for delays others as little as
- possible: records have threads of their own, as anybody may have made them, and so has the owner.
+ possible: records have threads of their own, as anybody may have made them, and so have the owner,
+ the viewers and all others.
  Any thread may call any function. */
 class AnswerLanes {
  public:
   enum class Lane : std::size_t {
+    kViewersScenes,
+    kViewersRecords,
     kGuestsScenes,
     kGuestsRecords,
     kOwnersScenes,
@@ -23,9 +27,12 @@ class AnswerLanes {
   };
 
   /** The lane of a request. */
-  [[nodiscard]] static Lane Find(bool is_owner, bool is_of_records) {
-    if (is_owner) {
+  [[nodiscard]] static Lane Find(const Visitor& visitor, bool is_of_records) {
+    if (visitor.is_owner) {
       return is_of_records ? Lane::kOwnersRecords : Lane::kOwnersScenes;
+    }
+    if (visitor.role == Role::kViewer) {
+      return is_of_records ? Lane::kViewersRecords : Lane::kViewersScenes;
     }
     return is_of_records ? Lane::kGuestsRecords : Lane::kGuestsScenes;
   }
@@ -52,7 +59,7 @@ class AnswerLanes {
   }
 
  private:
-  std::array<JobThread, 5> threads_;
+  std::array<JobThread, 7> threads_;
 };
 
 }  // namespace hvas::studio

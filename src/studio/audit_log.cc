@@ -2,7 +2,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <future>
@@ -30,6 +32,14 @@ std::string PrintTime() {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms);
 }
 
+/** Whether a text may be an id of the studio's, and nothing that a user has made up. */
+bool IsPlain(const std::string& text) {
+  constexpr std::size_t kLongestId = 100;  // Characters: a choice.
+  return text.size() <= kLongestId && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+         });
+}
+
 /** @returns whether the line is written. */
 bool Append(const std::filesystem::path& file, const std::string& line) {
   std::error_code failed;
@@ -45,7 +55,28 @@ bool Append(const std::filesystem::path& file, const std::string& line) {
 
 }  // namespace
 
-void AuditLog::Note(const Entry& entry) {
+void AuditLog::Note(std::uint32_t link, const Entry& entry, std::int64_t now_ns) {
+  Entry done = entry;
+  {
+    const std::lock_guard lock(mutex_);
+    Deeds& deeds = deeds_[link];
+    if (const std::int64_t minute = now_ns / kRefusalPauseNs; minute != deeds.minute) {
+      deeds.minute = minute;
+      deeds.noted = 0;
+    }
+    if (deeds.noted >= kMostInMinute) {
+      ++deeds.unnoted;
+      return;
+    }
+    ++deeds.noted;
+    if (deeds.unnoted > 0) {
+      done.did["left_out_before"] = std::exchange(deeds.unnoted, 0);
+    }
+  }
+  Print(done);
+}
+
+void AuditLog::Print(const Entry& entry) {
   Json line{{"time", PrintTime()}, {"who", entry.who}, {"address", entry.address}};
   if (!entry.client.empty()) {
     line["client"] = entry.client;
@@ -71,7 +102,7 @@ void AuditLog::NoteRefusal(std::uint32_t link, const Entry& entry, const std::st
     refusals = {now_ns, 0};
   }
   refused.did["refused"] = why;
-  Note(refused);
+  Print(refused);
 }
 
 void AuditLog::Write(const Json& line) {
@@ -110,15 +141,15 @@ Json DescribeForAudit(const Json& command) {
   constexpr std::array kFields{"action",    "hand",   "to",   "other", "occurrence",
                                "mate",      "on",     "off",  "count", "device",
                                "recording", "shared", "note", "scale", "example"};
-  constexpr std::size_t kLongestValue = 64;  // Characters of an id: a choice.
-  Json did{{"command", TextOr(command, "command", "").substr(0, kLongestValue)}};
+  const std::string name = TextOr(command, "command", "");
+  Json did{{"command", IsPlain(name) ? name : "(other)"}};
   for (const char* field : kFields) {
     const auto found = command.find(field);
     if (found == command.end() || found->is_structured()) {
       continue;
     }
-    did[field] =
-        found->is_string() ? Json(found->get<std::string>().substr(0, kLongestValue)) : *found;
+    const bool is_other = found->is_string() && !IsPlain(found->get_ref<const std::string&>());
+    did[field] = is_other ? Json("(other)") : *found;
   }
   return did;
 }

@@ -14,8 +14,9 @@
 namespace hvas::studio {
 
 /** Who did what in the studio: a file with one JSON object in each line (docs/access.md). What is
- refused is noted once a minute for each visitor's link, with the number of refusals since, so that
- nobody fills the disk. Any thread may call it; the file is written on a thread of its own. */
+ refused is noted once a minute for each visitor's link, and of what is done a number of lines a
+ minute, with the number of those left out, so that nobody fills the disk, or drives out what others
+ have done. Any thread may call it; the file is written on a thread of its own. */
 class AuditLog {
  public:
   /** Beyond this size a file is renamed to NAME.1, and a new one is begun [bytes]: some 50,000
@@ -35,10 +36,13 @@ class AuditLog {
     Json did;             ///< Object: command or request, and its fields of interest.
   };
 
-  void Note(const Entry& entry);
+  /** Lines of a link in a minute: more than a person does. A choice. */
+  static constexpr std::uint64_t kMostInMinute = 120;
 
-  /** @param link  Visitor::link(), or kStranger. @param why  Code of the error.
-   @param now_ns  MonotonicNs(). */
+  /** @param link  Visitor::link(), or kStranger. @param now_ns  MonotonicNs(). */
+  void Note(std::uint32_t link, const Entry& entry, std::int64_t now_ns);
+
+  /** @param why  Code of the error. */
   void NoteRefusal(std::uint32_t link, const Entry& entry, const std::string& why,
                    std::int64_t now_ns);
 
@@ -54,11 +58,19 @@ class AuditLog {
     std::uint64_t unnoted{0};  ///< Since the last line.
   };
 
+  struct Deeds {
+    std::int64_t minute{0};
+    std::uint64_t noted{0};    ///< Lines in this minute.
+    std::uint64_t unnoted{0};  ///< Since the last line.
+  };
+
+  void Print(const Entry& entry);
   void Write(const Json& line);
 
   const std::filesystem::path file_;
   std::mutex mutex_;  ///< Protects what follows.
   std::map<std::uint32_t, Refusals> refusals_;
+  std::map<std::uint32_t, Deeds> deeds_;
   std::uint64_t lost_{0};  ///< Lines for which there was no room.
   bool can_write_{true};   ///< Used by the writer alone.
   JobThread writer_;       ///< The last member: it ends first.

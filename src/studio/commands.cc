@@ -221,14 +221,14 @@ Result<Json> Hub::DoLater(const Caller& caller, std::function<Result<void>()> wo
 
 Result<Json> Hub::DoRecord(const Caller& caller, const protocol::RecordCommand& command) {
   return DoLater(caller, [recordings = &workbench_->recordings(), command] {
-    return command.on ? recordings->Start(command.name) : recordings->Stop();
+    return command.on ? recordings->Start(MakeOneLine(command.name)) : recordings->Stop();
   });
 }
 
 Result<Json> Hub::DoRenameRecording(const Caller& caller,
                                     const protocol::RenameRecordingCommand& command) {
   return DoLater(caller, [recordings = &workbench_->recordings(), command] {
-    return recordings->Rename(command.recording, command.name);
+    return recordings->Rename(command.recording, MakeOneLine(command.name));
   });
 }
 
@@ -305,8 +305,18 @@ Result<Json> Hub::DoLease(const Caller& caller, const protocol::LeaseCommand& co
 }
 
 Result<Json> Hub::DoIntroduce(const Caller& caller, const protocol::IntroduceCommand& command) {
-  clients_[caller.id].name = MakeOneLine(command.name);
-  BroadcastRoles();
+  Client& client = clients_[caller.id];
+  const std::string name = MakeOneLine(command.name);
+  constexpr std::int64_t kPauseNs = kNsPerS / 2;  // All clients are told of it: a choice.
+  if (name != client.name && client.named_ns > caller.now_ns - kPauseNs) {
+    return Fail(ErrorCode::kOutOfResource, "the name was changed a moment ago", "name",
+                "try again in a second");
+  }
+  if (name != client.name) {
+    client.named_ns = caller.now_ns;
+    client.name = name;
+    BroadcastRoles();
+  }
   return Json::object();
 }
 

@@ -56,15 +56,12 @@ void HandLeases::Release(const std::vector<std::size_t>& hands) {
   }
 }
 
-bool HandLeases::EndWaits(std::int64_t now_ns) {
-  bool has_ended = false;
+void HandLeases::EndWaits(std::int64_t now_ns) {
   for (Lease& lease : leases_) {
     if (lease.awaited != 0 && lease.awaited_ns <= now_ns) {
       lease = {};
-      has_ended = true;
     }
   }
-  return has_ended;
 }
 
 HandLeases::Obstacle HandLeases::Request(const std::vector<std::size_t>& hands,

@@ -45,9 +45,6 @@ class HandLeases {
   /** Takes hands from their clients; they wait for nobody. */
   void Release(const std::vector<std::size_t>& hands);
 
-  /** Ends the wait for browsers that have not come back in time. @returns whether one has ended. */
-  bool EndWaits(std::int64_t now_ns);
-
   /** What stands in the way of a request. */
   struct Obstacle {
     std::string holder;  ///< Client that has to agree; empty: none has to.
@@ -71,6 +68,9 @@ class HandLeases {
       return client.empty() && (awaited == 0 || awaited == browser);
     }
   };
+
+  /** Ends the wait for browsers that have not come back in time. */
+  void EndWaits(std::int64_t now_ns);
 
   std::array<Lease, haptics::kMaxHands> leases_;
 };

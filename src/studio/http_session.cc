@@ -236,8 +236,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         self->Reply(std::move(made));
       });
     };
-    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor.is_owner, is_of_records),
-                                 std::move(job))) {
+    if (!shared_->lanes->TryPost(AnswerLanes::Find(visitor, is_of_records), std::move(job))) {
       Refuse(http::status::service_unavailable,
              {ErrorCode::kOutOfResource, "too many requests wait for an answer", std::move(path),
               "try again in a few seconds"});
@@ -298,8 +297,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!admission) {
       return Refuse(http::status::unauthorized, admission.error());
     }
-    shared_->SaveAccessState();
-    Note({{"request", "come_in"}, {"as", ToString(admission->visitor)}});
+    if (admission->has_changed) {
+      shared_->SaveAccessState();
+      visitor_ = admission->visitor;
+      Note({{"request", "come_in"}});
+    }
     if (admission->visitor.role == Role::kParticipant) {
       shared_->UpdateParticipantLink();
     }
@@ -447,7 +449,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     return {visitor_ ? ToString(*visitor_) : "stranger", connection_.address(), "", std::move(did)};
   }
 
-  void Note(Json did) { shared_->audit->Note(MakeEntry(std::move(did))); }
+  void Note(Json did) {
+    shared_->audit->Note(LinkOf(visitor_), MakeEntry(std::move(did)), MonotonicNs());
+  }
+
+  [[nodiscard]] static std::uint32_t LinkOf(const std::optional<Visitor>& visitor) {
+    return visitor ? visitor->link() : AuditLog::kStranger;
+  }
 
   void RefuseBody(error_code error) {
     if (error == http::error::body_limit) {
@@ -495,7 +503,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   /** For saving: it may be large. */
-  void SendFile(const std::filesystem::path& file, std::shared_ptr<const RegularFile> opened,
+  void SendFile(const std::filesystem::path& file, const std::shared_ptr<const RegularFile>& opened,
                 const std::string& type) {
     http::response<http::empty_body> response(http::status::ok, 11);
     response.set(http::field::content_type, type);
@@ -531,13 +539,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           const auto executor = self->connection_.get_executor();
           asio::post(executor, [self = std::move(self), file = std::move(file), piece, from,
                                 keeps_alive]() mutable {
-            self->WritePiece(std::move(file), std::move(piece), from, keeps_alive);
+            self->WritePiece(std::move(file), piece, from, keeps_alive);
           });
         });
   }
 
-  void WritePiece(std::shared_ptr<const RegularFile> file, std::shared_ptr<std::string> piece,
-                  std::uintmax_t from, bool keeps_alive) {
+  void WritePiece(std::shared_ptr<const RegularFile> file,
+                  const std::shared_ptr<std::string>& piece, std::uintmax_t from,
+                  bool keeps_alive) {
     if (piece->empty()) {  // The file became shorter: the client sees that the rest is missing.
       return wire().close();
     }
@@ -563,9 +572,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Refuse(http::status status, const Error& error) {
     is_refused_ = true;
     shared_->audit->NoteRefusal(
-        visitor_ ? visitor_->link() : AuditLog::kStranger,
-        MakeEntry({{"request", "http"}, {"status", static_cast<int>(status)}}), NameOf(error.code),
-        MonotonicNs());
+        LinkOf(visitor_), MakeEntry({{"request", "http"}, {"status", static_cast<int>(status)}}),
+        NameOf(error.code), MonotonicNs());
     SendJson(status, {{"error", ToJson(error)}});
   }
 

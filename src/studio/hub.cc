@@ -14,6 +14,8 @@
 namespace hvas::studio {
 namespace {
 
+constexpr std::size_t kLongestForcesOff = 1000;  // [bytes] of such a command: a choice.
+
 bool IsForcesOff(const Json& command) {
   return TextAt(command, "command").value_or("") == "forces" &&
          FlagAt(command, "off").value_or(false);
@@ -203,7 +205,12 @@ Json Hub::MakeRoles() const {
 }
 
 void Hub::BroadcastRoles() {
-  Broadcast(MakeRoles());
+  Json roles = MakeRoles();
+  if (roles == roles_) {
+    return;
+  }
+  roles_ = roles;
+  Broadcast(std::move(roles));
   Broadcast({{"event", "hands"}});
 }
 
@@ -223,15 +230,17 @@ void Hub::CloseRevoked() {
   }
 }
 
-bool Hub::MaySend(Client* client, std::int64_t now_ns) const {
+bool Hub::MaySend(Client* client, std::size_t bytes, std::int64_t now_ns) const {
+  constexpr double kBytesOfOne = 1024;  // What a usual command has at most: a choice.
+  const double cost = 1 + static_cast<double>(bytes) / kBytesOfOne;
   const double elapsed = 1e-9 * static_cast<double>(now_ns - client->last_command_ns);
   client->last_command_ns = now_ns;
   client->allowance =
       std::min(kCommandBurst, client->allowance + kCommandsPerSecond * std::max(0.0, elapsed));
-  if (client->allowance < 1) {
+  if (client->allowance < cost) {
     return false;
   }
-  client->allowance -= 1;
+  client->allowance -= cost;
   return true;
 }
 
@@ -241,11 +250,14 @@ void Hub::OnText(const std::string& id, std::string_view text, std::int64_t now_
     return;
   }
   ClientLink* link = found->second.link;
-  const Result<Json> command = ParseCommand(text);
+  // Switching the forces off is exempt from the rate limit (N6); what is long is not even parsed.
+  const bool may_send = MaySend(&found->second, text.size(), now_ns);
+  const Result<Json> command = may_send || text.size() <= kLongestForcesOff
+                                   ? ParseCommand(text)
+                                   : Result<Json>(Json::object());
   Result<Json> result = command;
-  // Switching the forces off is exempt from the rate limit (N6).
   const bool is_urgent = command && IsForcesOff(*command) && !workbench_->live().forces_off();
-  if (!MaySend(&found->second, now_ns) && !is_urgent) {
+  if (!may_send && !is_urgent) {
     result = Fail(ErrorCode::kOutOfResource, "too many commands", "",
                   "send fewer commands for each second");
   } else if (command) {
@@ -262,8 +274,7 @@ void Hub::SendReply(ClientLink* link, const Result<Json>& command, const Result<
 }
 
 bool Hub::TrySwitchForcesOff(const std::string& id, std::string_view text, std::int64_t now_ns) {
-  constexpr std::size_t kLongest = 1000;  // [bytes] of such a command: a choice.
-  if (text.size() > kLongest || text.find("forces") == std::string_view::npos) {
+  if (text.size() > kLongestForcesOff || text.find("forces") == std::string_view::npos) {
     return false;
   }
   const Result<Json> command = ParseCommand(text);
@@ -351,7 +362,7 @@ void Hub::NoteCommand(const std::string& id, const Client& client, const Json& c
   const AuditLog::Entry entry{ToString(client.visitor), client.link->address(), id,
                               DescribeForAudit(command)};
   if (result) {
-    audit_->Note(entry);
+    audit_->Note(client.visitor.link(), entry, now_ns);
   } else {
     audit_->NoteRefusal(client.visitor.link(), entry, NameOf(result.error().code), now_ns);
   }
@@ -408,10 +419,7 @@ void Hub::SendFrame(const LiveFrame& frame, Client* client) {
   client->link->SendFrames(std::move(bytes));
 }
 
-void Hub::PublishStatus(std::int64_t now_ns) {
-  if (leases_.EndWaits(now_ns)) {
-    BroadcastRoles();
-  }
+void Hub::PublishStatus() {
   if (desk_ != nullptr && desk_->Poll(workbench_->live().clock().NowNs())) {
     BroadcastStudyState();
   }

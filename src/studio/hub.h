@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -58,7 +59,7 @@ class Hub {
   /** Frame messages that are not yet acknowledged: those of a round trip of 130 ms at 60 a second.
    */
   static constexpr std::size_t kMaxUnseen = 8;
-  /** Sustained rate for one client (token bucket). */
+  /** Sustained rate for one client (token bucket); a long command counts as several. */
   static constexpr double kCommandsPerSecond = 50;
   static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.
 
@@ -108,8 +109,8 @@ class Hub {
   /** Sends the newest frame to all clients that have acknowledged enough of the previous ones. */
   void PublishFrame();
 
-  /** Sends the event "status", and ends the waits of leases; to be called once a second. */
-  void PublishStatus(std::int64_t now_ns);
+  /** Sends the event "status"; to be called once a second. */
+  void PublishStatus();
 
   /** Files that clients have sent, and can open by their ids. */
   [[nodiscard]] UploadShelf& uploads() { return uploads_; }
@@ -128,6 +129,8 @@ class Hub {
     ShownState shown;         ///< Poses and deformations that the client has.
     double allowance{kCommandBurst};
     std::int64_t last_command_ns{0};
+    std::int64_t named_ns{
+        std::numeric_limits<std::int64_t>::min()};  ///< When it has given its name.
   };
 
   struct Caller {
@@ -209,7 +212,7 @@ class Hub {
   void SendTo(const Client& client, const Json& event, const std::string& text);
 
   void SendReply(ClientLink* link, const Result<Json>& command, const Result<Json>& result);
-  [[nodiscard]] bool MaySend(Client* client, std::int64_t now_ns) const;
+  [[nodiscard]] bool MaySend(Client* client, std::size_t bytes, std::int64_t now_ns) const;
   [[nodiscard]] Json MakeHello(const std::string& id, const Client& client) const;
   Result<Json> RequestLease(const Caller& caller, const std::vector<std::size_t>& hands);
   void BroadcastRoles();
@@ -224,6 +227,7 @@ class Hub {
   std::map<std::string, Client> clients_;
   UploadShelf uploads_;
   HandLeases leases_;
+  Json roles_;  ///< Event "roles" as it was sent last.
   std::uint32_t last_id_{0};
   Json status_;
 };

@@ -156,7 +156,7 @@ Result<std::filesystem::path> RecordingShelf::Find(const std::string& id) const 
       return item.path();
     }
   }
-  return Fail(ErrorCode::kNotFound, "there is no such recording", id, "reload the list");
+  return Fail(ErrorCode::kNotFound, "there is no such recording", "recording", "reload the list");
 }
 
 Result<std::string> RecordingShelf::Read(const std::string& id, RecordPart part,

@@ -172,7 +172,7 @@ class Server::Impl {
     timer_.expires_after(std::chrono::seconds(1));
     timer_.async_wait([this](error_code error) {
       if (!error) {
-        shared_->hub.PublishStatus(MonotonicNs());
+        shared_->hub.PublishStatus();
         Tick();
       }
     });

@@ -1,6 +1,7 @@
 // For the sources of the server alone: Boost.Beast takes long to compile.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -44,11 +45,16 @@ struct ServerShared {
   std::shared_ptr<ConnectionTable> connections{std::make_shared<ConnectionTable>()};
   AnswerLanes* lanes{nullptr};  ///< Outlives all sessions.
 
-  /** Saves the access control after a change, in the background. */
+  /** Saves the access control after a change, in the background: once for all changes that come
+   before the disk is free. */
   void SaveAccessState() {
-    lanes->Post(
-        AnswerLanes::Lane::kDisk,
-        [this, kept = access->Keep()](const std::stop_token& /*stop*/) { SaveAccessNow(kept); });
+    if (is_access_to_save.exchange(true)) {
+      return;
+    }
+    lanes->Post(AnswerLanes::Lane::kDisk, [this](const std::stop_token& /*stop*/) {
+      is_access_to_save = false;
+      SaveAccessNow(access->Keep());
+    });
   }
 
   /** Prints a warning the first time that this fails. For the disk lane, and while there is none.
@@ -73,6 +79,7 @@ struct ServerShared {
   }
 
   bool can_save_access{true};
+  std::atomic<bool> is_access_to_save{false};  ///< A job of the disk lane is going to save it.
 };
 
 }  // namespace hvas::studio

@@ -22,9 +22,33 @@ Json MakeNote(const std::string& id, const WorkbenchNotes::Remark& remark) {
 
 }  // namespace
 
+namespace {
+
+/** Removes the characters that turn the direction of writing (U+200E, U+200F, U+202A to U+202E,
+ U+2066 to U+2069), with which a name could look like another one. */
+std::string RemoveDirections(std::string_view text) {
+  const auto is_direction = [](std::string_view three) {
+    const auto last = static_cast<unsigned char>(three[2]);
+    const bool is_first_block = three.starts_with("\xE2\x80") &&
+                                (last == 0x8E || last == 0x8F || (last >= 0xAA && last <= 0xAE));
+    return is_first_block || (three.starts_with("\xE2\x81") && last >= 0xA6 && last <= 0xA9);
+  };
+  std::string kept;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.size() - i >= 3 && is_direction(text.substr(i, 3))) {
+      i += 2;
+    } else {
+      kept += text[i];
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
 std::string MakeOneLine(std::string_view text) {
   constexpr char kDelete = 0x7F;
-  std::string line(text);
+  std::string line = RemoveDirections(text);
   std::replace_if(
       line.begin(), line.end(),
       [](char c) { return (static_cast<unsigned char>(c) < ' ') || c == kDelete; }, ' ');
@@ -67,7 +91,7 @@ Result<void> WorkbenchNotes::Remove(const std::string& id) {
     const auto found = std::find_if(notes_.begin(), notes_.end(),
                                     [&id](const Json& note) { return note["id"] == id; });
     if (found == notes_.end()) {
-      return Fail(ErrorCode::kNotFound, "there is no such note", id, "it may be gone already");
+      return Fail(ErrorCode::kNotFound, "there is no such note", "note", "it may be gone already");
     }
     notes_.erase(found);
   }

@@ -1,6 +1,5 @@
 #include "app/command_watch.h"
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -70,11 +69,15 @@ TEST(CommandWatchTest, ThousandsOfTrianglesThatAreObjectsOfTheirOwnAreListedInTi
   EXPECT_EQ(ran.status, 0) << ran.err;
 }
 
-/** Runs a command in a process of its own that watches it, and returns its exit status. */
-template <typename Work>
-int StatusWithin(double limit_s, const Work& work) {
-  const pid_t child = ::fork();
-  if (child == 0) {
+/** Commands that are watched, each in a process of its own, which begins anew: a copy of this one
+ would have the locks of its threads, and not the threads. */
+class WatchedCommandTest : public ::testing::Test {
+ protected:
+  void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+
+  /** Runs a command and ends the process with its exit status. */
+  template <typename Work>
+  [[noreturn]] static void Run(double limit_s, const Work& work) {
     CommandWatch& watch = CommandWatch::Get();
     WorkLimits limits;
     limits.time = limit_s;
@@ -82,42 +85,36 @@ int StatusWithin(double limit_s, const Work& work) {
     work(&watch);
     ::_exit(watch.Conclude(0));
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+};
+
+TEST_F(WatchedCommandTest, HasItsOwnStatusWhereItEndsInTime) {
+  EXPECT_EXIT(Run(100, [](CommandWatch* /*watch*/) {}), ::testing::ExitedWithCode(0), "");
 }
 
-TEST(CommandWatchTest, CommandThatEndsInTimeHasItsOwnStatus) {
-  EXPECT_EQ(StatusWithin(100, [](CommandWatch* /*watch*/) {}), 0);
+TEST_F(WatchedCommandTest, IsEndedWhereItHeedsNoRequestToStop) {
+  const auto work = [](CommandWatch* /*watch*/) {
+    while (true) {
+      ::pause();
+    }
+  };
+  EXPECT_EXIT(Run(0.01, work), ::testing::ExitedWithCode(1), "rig.step.*--time-limit");
 }
 
-TEST(CommandWatchTest, CommandThatHeedsNoRequestToStopIsEnded) {
-  EXPECT_EQ(StatusWithin(0.01,
-                     [](CommandWatch* /*watch*/) {
-                       while (true) {
-                         ::pause();
-                       }
-                     }),
-            1);
+TEST_F(WatchedCommandTest, HasFailedWhereItWasCutShortAlsoWhereNothingWasReported) {
+  const auto work = [](CommandWatch* watch) {
+    while (!watch->stop().stop_requested()) {
+      ::usleep(1000);
+    }
+  };
+  EXPECT_EXIT(Run(0.01, work), ::testing::ExitedWithCode(1), "rig.step.*--time-limit");
 }
 
-TEST(CommandWatchTest, CommandThatWasCutShortIsAFailureAlsoWhereNothingWasReported) {
-  EXPECT_EQ(StatusWithin(0.01,
-                     [](CommandWatch* watch) {
-                       while (!watch->stop().stop_requested()) {
-                         ::usleep(1000);
-                       }
-                     }),
-            1);
-}
-
-TEST(CommandWatchTest, PeopleHaveTheirOwnTime) {
-  EXPECT_EQ(StatusWithin(0.2,
-                     [](CommandWatch* watch) {
-                       watch->End();
-                       ::usleep(1'500'000);
-                     }),
-            0);
+TEST_F(WatchedCommandTest, GivesPeopleTheirOwnTime) {
+  const auto work = [](CommandWatch* watch) {
+    watch->End();
+    ::usleep(1'500'000);
+  };
+  EXPECT_EXIT(Run(0.2, work), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

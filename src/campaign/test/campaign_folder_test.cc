@@ -179,6 +179,21 @@ TEST_F(CampaignFolderTest, AShardThatIsNoFileIsNamedAndNotWaitedFor) {
   EXPECT_FALSE(ReadShard(shard, folder.MakeKey(1)));
 }
 
+TEST_F(CampaignFolderTest, TableReplacesNoFileThatIsNone) {
+  const auto file = scratch_ / "precious.txt";
+  std::ofstream(file) << "precious";
+  const auto refused = TableFile::Create(file);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalid);
+  EXPECT_FALSE(refused.error().remedy.empty());
+  const auto pipe = scratch_ / "pipe.sqlite";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(TableFile::Create(pipe));
+  std::string kept;
+  std::getline(std::ifstream(file), kept);
+  EXPECT_EQ(kept, "precious");
+}
+
 TEST_F(CampaignFolderTest, OfTwoThatWriteOneTableTheSecondIsRefused) {
   auto first = TableFile::Create(scratch_ / "rows.sqlite");
   ASSERT_TRUE(first) << first.error().ToString();

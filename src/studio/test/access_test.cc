@@ -291,14 +291,34 @@ TEST(AccessTest, FreshLinkIsAnotherOneOnceSomebodyHasComeByIt) {
   EXPECT_NE(access.FindUnusedLink(Role::kParticipant), fresh);
 }
 
-TEST(AccessTest, BrowserThatHasLookedOnSteersAgainByItsOwnLink) {
+TEST(AccessTest, ViewersLinkTakesNothingFromWhoHasComeByAnotherOne) {
   Access access({}, kPort, false);
   const std::string token = access.token(Role::kOperator);
-  const std::string cookie = ComeBy(&access, token);
-  EXPECT_EQ(ComeBy(&access, access.token(Role::kViewer), cookie), cookie);
-  EXPECT_EQ(RoleOf(access, cookie), Role::kViewer);
-  ComeBy(&access, token, cookie);
-  EXPECT_EQ(RoleOf(access, cookie), Role::kOperator);
+  const std::string owner = ComeBy(&access, token);
+  const std::string guest = ComeBy(&access, access.MakeInvitation(Role::kOperator));
+  for (const std::string& cookie : {owner, guest}) {
+    EXPECT_EQ(ComeBy(&access, access.token(Role::kViewer), cookie), cookie);
+    EXPECT_EQ(RoleOf(access, cookie), Role::kOperator);
+  }
+  EXPECT_TRUE(access.FindVisitor(owner)->is_owner);
+  for (std::size_t i = 0; i < 2 * Access::kMaxViewers; ++i) {
+    ComeBy(&access, access.token(Role::kViewer));
+  }
+  EXPECT_EQ(RoleOf(access, owner), Role::kOperator) << "no viewer takes its place";
+  EXPECT_EQ(RoleOf(access, guest), Role::kOperator);
+  // Who looks on and is invited then works.
+  const std::string viewer = ComeBy(&access, access.token(Role::kViewer));
+  ComeBy(&access, access.MakeInvitation(Role::kOperator), viewer);
+  EXPECT_EQ(RoleOf(access, viewer), Role::kOperator);
+}
+
+TEST(AccessTest, WhoComesAgainChangesNothing) {
+  Access access({}, kPort, false);
+  for (const Role role : kRoles) {
+    const std::string cookie = ComeBy(&access, access.token(role));
+    EXPECT_FALSE(access.Admit(access.token(role), cookie)->has_changed);
+  }
+  EXPECT_TRUE(access.Admit(access.token(Role::kViewer), "")->has_changed);
 }
 
 TEST(AccessTest, OwnerIsTheBrowserOfTheFirstOperatorsLink) {

@@ -31,8 +31,9 @@ class AuditLogTest : public ::testing::Test {
 
 TEST_F(AuditLogTest, LineSaysWhoDidWhatFromWhere) {
   AuditLog log(file_);
-  log.Note({"owner", "192.168.1.5", "c1", DescribeForAudit({{"command", "take"}, {"hand", 1}})});
-  log.Note({"stranger", "::1", "", {{"request", "come_in"}}});
+  log.Note(1, {"owner", "192.168.1.5", "c1", DescribeForAudit({{"command", "take"}, {"hand", 1}})},
+           0);
+  log.Note(AuditLog::kStranger, {"stranger", "::1", "", {{"request", "come_in"}}}, 0);
   log.Stop();
   const std::vector<Json> lines = Read();
   ASSERT_EQ(lines.size(), 2u);
@@ -58,7 +59,9 @@ TEST_F(AuditLogTest, WhatUsersHaveWrittenIsNotKept) {
                                      {"upload", "secret"},
                                      {"value", "secret"},
                                      {"occurrence", {{"a", "secret"}}},
+                                     {"example", "../se\ncret"},
                                      {"recording", std::string(1000, 'r')}});
+  EXPECT_EQ(did["example"], "(other)");
   EXPECT_EQ(did.dump().find("secret"), std::string::npos) << did;
   EXPECT_LT(did.dump().size(), 200u);
 }
@@ -66,7 +69,9 @@ TEST_F(AuditLogTest, WhatUsersHaveWrittenIsNotKept) {
 TEST_F(AuditLogTest, LineBreaksMakeNoLine) {
   AuditLog log(file_);
   log.Note(
-      {"viewer", "x\n{\"who\": \"owner\"}", "c\r\n", DescribeForAudit({{"command", "a\nb\xff"}})});
+      0,
+      {"viewer", "x\n{\"who\": \"owner\"}", "c\r\n", DescribeForAudit({{"command", "a\nb\xff"}})},
+      0);
   log.Stop();
   EXPECT_EQ(Read().size(), 1u);
 }
@@ -87,10 +92,25 @@ TEST_F(AuditLogTest, RefusalsAreNotedOnceAMinuteForEachLinkWithTheirNumber) {
   EXPECT_EQ(lines[2]["refused_before"], 999);
 }
 
+TEST_F(AuditLogTest, LinesOfALinkInAMinuteAreLimited) {
+  AuditLog log(file_);
+  const AuditLog::Entry flood{"viewer", "::1", "c2", {{"request", "come_in"}}};
+  for (int i = 0; i < 100'000; ++i) {
+    log.Note(0, flood, 0);
+  }
+  log.Note(1, {"owner", "::1", "c1", {{"command", "delete_recording"}}}, 0);
+  log.Note(0, flood, AuditLog::kRefusalPauseNs);
+  log.Stop();
+  const std::vector<Json> lines = Read();
+  ASSERT_EQ(lines.size(), AuditLog::kMostInMinute + 2);
+  EXPECT_EQ(lines[AuditLog::kMostInMinute]["who"], "owner");
+  EXPECT_EQ(lines.back()["left_out_before"], 100'000 - AuditLog::kMostInMinute);
+}
+
 TEST_F(AuditLogTest, LongFileIsRenamedAndANewOneBegun) {
   std::ofstream(file_) << std::string(AuditLog::kMaxBytes + 1, ' ');
   AuditLog log(file_);
-  log.Note({"owner", "::1", "c1", {{"command", "reset"}}});
+  log.Note(1, {"owner", "::1", "c1", {{"command", "reset"}}}, 0);
   log.Stop();
   EXPECT_EQ(Read().size(), 1u);
   EXPECT_GT(std::filesystem::file_size(file_.string() + ".1"), AuditLog::kMaxBytes);
@@ -98,7 +118,7 @@ TEST_F(AuditLogTest, LongFileIsRenamedAndANewOneBegun) {
 
 TEST_F(AuditLogTest, NothingIsWrittenWithoutAFileOrThroughALink) {
   AuditLog none("");
-  none.Note({"owner", "::1", "c1", {{"command", "reset"}}});
+  none.Note(1, {"owner", "::1", "c1", {{"command", "reset"}}}, 0);
   none.Stop();
   none.Stop();  // does nothing
   const auto target = folder_.path() / "target";
@@ -106,8 +126,8 @@ TEST_F(AuditLogTest, NothingIsWrittenWithoutAFileOrThroughALink) {
   std::filesystem::create_symlink(target, file_);
   ::testing::internal::CaptureStderr();
   AuditLog log(file_);
-  log.Note({"owner", "::1", "c1", {{"command", "reset"}}});
-  log.Note({"owner", "::1", "c1", {{"command", "reset"}}});
+  log.Note(1, {"owner", "::1", "c1", {{"command", "reset"}}}, 0);
+  log.Note(1, {"owner", "::1", "c1", {{"command", "reset"}}}, 0);
   log.Stop();
   const std::string warning = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(warning.find("the audit log cannot be written"), std::string::npos);

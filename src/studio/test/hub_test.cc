@@ -251,9 +251,6 @@ TEST_F(HubTest, LeaseWaitsForTheBrowserThatHasLostItAndIsFreeThen) {
   EXPECT_EQ(again.Last("hello")["has_lease"], true);
   Leave(back);
   now_ns_ += HandLeases::kWaitNs;
-  second.texts.clear();
-  hub_.PublishStatus(now_ns_);
-  EXPECT_FALSE(second.Last("roles").is_null()) << "all are told that it is free";
   EXPECT_TRUE(Ask(b, &second, request)["ok"]);
   EXPECT_EQ(second.Last("roles")["clients"][0]["has_lease"], true);
 }
@@ -421,8 +418,9 @@ TEST_F(HubTest, OthersSeeNamesAndWhatIsLookedAt) {
   FakeLink second;
   const std::string a = Join(Role::kOperator, &first);
   const std::string b = Join(Role::kViewer, &second);
-  EXPECT_EQ(Ask(a, &first, {{"command", "introduce"}, {"name", "  Ada\n<b>Byron\x7f "}})["ok"],
-            true);
+  EXPECT_EQ(
+      Ask(a, &first, {{"command", "introduce"}, {"name", "  A\u202eda\n<b>Byron\x7f "}})["ok"],
+      true);
   EXPECT_EQ(second.Last("roles")["clients"][0]["name"], "Ada <b>Byron");
   EXPECT_TRUE(IsError(Ask(a, &first, {{"command", "introduce"}, {"name", std::string(41, 'x')}}),
                       "invalid"));

@@ -190,7 +190,7 @@ TEST_F(ProtocolTest, SessionIsAsTheSchemaSays) {
   EXPECT_FALSE(DoAs("c2", &other_link_, {{"command", "ask_part"}, {"hand", 0}}).is_null());
   EXPECT_FALSE(Do({{"command", "lease"}, {"action", "give"}, {"to", "c2"}}).is_null());
   ASSERT_TRUE(log_.AwaitTrue([this] {
-    hub_.PublishStatus(now_ns_);
+    hub_.PublishStatus();
     return link_.events.count("status") > 0;
   }));
   EXPECT_FALSE(Do({{"command", "status"}}).is_null());

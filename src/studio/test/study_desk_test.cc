@@ -474,7 +474,7 @@ TEST_F(StudyDeskTest, TimesOutByTheTickClockAndAbortsCountForNothing) {
   Do(participant_, {{"action", "ready"}});  // a trial of one second
   PumpUntil("trial_begun");
   AwaitElapsed(1);
-  hub_.PublishStatus(0);
+  hub_.PublishStatus();
   PumpUntil("trial_over");
   const Json done = desk_->MakeState(Role::kOperator, now_ns_)["done"];
   ASSERT_EQ(done.size(), 2U);
