@@ -47,17 +47,17 @@ constexpr const char* kLockFile = "campaign.lock";
  while it did, has put there. Such a program has its lock file there until it is done. */
 bool IsNew(const std::filesystem::path& path) {
   std::error_code failed;
-  const bool has_lock = std::filesystem::exists(path / kLockFile, failed);
+  bool is_empty = true;
   for (const auto& entry : std::filesystem::directory_iterator(path, failed)) {
     const std::string name = entry.path().filename().string();
     // Files that WriteAtomically() has not finished have six more letters.
-    const bool is_own =
-        name == kLockFile || name.starts_with(kPlanCopy) || name.starts_with(kFolderFile);
-    if (!has_lock || !is_own) {
+    if (name != kLockFile && !name.starts_with(kPlanCopy) && !name.starts_with(kFolderFile)) {
       return false;
     }
+    is_empty = false;
   }
-  return !failed;
+  // The lock file is looked for last: one that has come since the list was begun counts as well.
+  return !failed && (is_empty || std::filesystem::exists(path / kLockFile, failed));
 }
 
 /** Locks the making of a folder, which takes some milliseconds: of two programs that begin at once,

@@ -200,8 +200,12 @@ void ListNumericOptions(CLI::App* app, std::vector<std::string> command,
 std::string Refuse(CLI::App* app, const NumericOption& option, const std::string& value) {
   std::vector<std::string> words = option.command;
   words.insert(words.end(), static_cast<std::size_t>(option.arguments_before), "x");
-  words.push_back(option.is_argument ? "--" : option.name);
-  words.push_back(value);
+  if (!option.is_argument && value.starts_with("-")) {
+    words.push_back(option.name + "=" + value);  // By itself it could be an option.
+  } else {
+    words.push_back(option.is_argument ? "--" : option.name);
+    words.push_back(value);
+  }
   std::reverse(words.begin(), words.end());
   try {
     app->parse(std::move(words));

@@ -164,7 +164,7 @@ std::string WriteHostilePump(const TemporaryFolder& folder) {
     rest = (*found)[2].first;
   }
   hostile.append(rest, text.end());
-  const std::string name = "PRODUCT('";  // The first one is the product's.
+  const std::string name = "PRODUCT('gear pump','";  // Its id, and then its name.
   hostile.insert(hostile.find(name) + name.size(), "=");
   return folder.Write("hostile.step", hostile).string();
 }
@@ -212,7 +212,7 @@ TEST(HostileNamesTest, NoCellOfAnyTableIsAFormula) {
   const std::vector<Case> cases{
       {"hvas dfa --output", {"dfa", pump}, 5},
       {"hvas tool --output", {"tool", pump, "--screw", "@cover screw 1", "--turn", "90", "-q"}, 0},
-      {"hvas path --output", {"path", pump, "--part", "cover", "--translate", "0,0,80", "-q"}, 0},
+      {"hvas path --output", {"path", pump, "--part", "@cover", "--translate", "0,0,80", "-q"}, 0},
       {"hvas export --output", {"export", record, "--every", "100"}, 0},
       {"hvas fit --curve", {"fit", "40 H7/p6", "--length", "50", "--curve"}, 0},
       {"hvas fit paper --curve", {"fit", "paper", "--curve"}, 0},

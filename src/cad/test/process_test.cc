@@ -282,7 +282,7 @@ TEST_F(ProcessTest, DeathBeforeAnyPartIsAnError) {
   for (const Case& c :
        {Case{"crash start", ErrorCode::kUnreadable,
              "the reader of CAD files crashed on this file (signal 11) while it was "
-             "at the stage \"start\""},
+             "at the stage \"read\""},
         Case{"exit start", ErrorCode::kUnreadable, "exit status 3"},
         Case{"memory start", ErrorCode::kOutOfResource, "memory"},
         Case{"silent", ErrorCode::kInternal, "no product"},
