@@ -106,7 +106,7 @@ Result<void> WriteShard(const std::filesystem::path& file, const ShardKey& key,
   if (!database) {
     return Unexpected(database.error());
   }
-  if (const auto filled = FillShard(&*database, key, rows); !filled) {
+  if (auto filled = FillShard(&*database, key, rows); !filled) {
     return filled;
   }
   const auto bytes = database->Serialize();

@@ -22,7 +22,7 @@ Vec3 PassivityChannel::Limit(const Vec3& moved, const Vec3& force, double stored
   }
   moved_ = moved;
   wanted_ = force.allFinite() ? force : Vec3::Zero();
-  const Vec3 limited = dt > 0 ? Bound(Damp(wanted_, dt)) : Vec3::Zero();
+  Vec3 limited = dt > 0 ? Bound(Damp(wanted_, dt)) : Vec3::Zero();
   is_active_ = limited != force;
   return limited;
 }

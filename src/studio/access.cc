@@ -134,7 +134,8 @@ std::optional<std::string> FindCookie(std::string_view cookie_header, std::strin
   return std::nullopt;
 }
 
-Access::Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, SavedAccess kept)
+Access::Access(const std::vector<std::string>& names, std::uint16_t port, bool is_tls,
+               SavedAccess kept)
     : hosts_{"127.0.0.1", "localhost", "::1"},
       cookie_name_(fmt::format("hvas_session_{}", port)),
       port_(port),

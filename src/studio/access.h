@@ -106,7 +106,8 @@ class Access {
    @param port  Port that the browser connects to.
    @param is_tls  Whether pages are served by https.
    @param kept  State of the previous start; ignored where that had another port. */
-  Access(std::vector<std::string> names, std::uint16_t port, bool is_tls, SavedAccess kept = {});
+  Access(const std::vector<std::string>& names, std::uint16_t port, bool is_tls,
+         SavedAccess kept = {});
 
   /** The origin of this server under a host name or address, as browsers write it. */
   [[nodiscard]] std::string OriginOf(std::string_view host) const;

@@ -320,7 +320,7 @@ Result<void> Journal::Write(const std::string& line) {
 }
 
 Result<void> Journal::Append(const StudyEvent& event) {
-  const Result<void> written = Write(MakeLine(MakeEventJson(event)));
+  Result<void> written = Write(MakeLine(MakeEventJson(event)));
   if (written) {
     events_.push_back(event);
   }

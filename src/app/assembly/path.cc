@@ -297,7 +297,7 @@ Result<void> WritePath(const PathOptions& options) {
     }
     summary.update(*clearances);
   }
-  const Result<void> written = WriteOutput(options, *product, occurrence, *path, &summary);
+  Result<void> written = WriteOutput(options, *product, occurrence, *path, &summary);
   if (written && options.is_json) {
     fmt::print("{}\n", summary.dump(2));
   } else if (written) {

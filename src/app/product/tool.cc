@@ -220,6 +220,23 @@ Result<simulation::TurnResult> Turn(const ToolOptions& options, const Product& p
                                    turn);
 }
 
+/** The room of each end of a tool that fits a fastener. */
+std::vector<EndReach> CalcReaches(const simulation::ReachQuery& query,
+                                  const std::vector<simulation::ToolMate>& mates,
+                                  const Occurrence& fastener, Diagnostics* diagnostics) {
+  NoteStage("reach of the tool");
+  std::vector<EndReach> ends;
+  for (const simulation::ToolMate& mate : mates) {
+    ends.push_back({mate, simulation::CalcToolReach(query, mate, fastener.X_WB)});
+    if (ends.back().reach.is_truncated) {
+      diagnostics->Warn("limit-contact", fastener.path,
+                        "a contact query reached its limit of points",
+                        "a thin obstacle may be missed");
+    }
+  }
+  return ends;
+}
+
 Result<Reach> FindReach(const ToolOptions& options, const Product& product,
                         const Fastener& fastener, Diagnostics* diagnostics) {
   const std::string& path = product.occurrences[fastener.id.index()].path;
@@ -265,15 +282,7 @@ Result<Reach> FindReach(const ToolOptions& options, const Product& product,
   query.fastener = contact::BodyId(fastener.id.index());
   query.tool = tool_shapes->front().get();
   query.tool_part = &part;
-  NoteStage("reach of the tool");
-  for (const simulation::ToolMate& mate : mates) {
-    result.ends.push_back({mate, simulation::CalcToolReach(
-                                     query, mate, product.occurrences[fastener.id.index()].X_WB)});
-    if (result.ends.back().reach.is_truncated) {
-      diagnostics->Warn("limit-contact", path, "a contact query reached its limit of points",
-                        "a thin obstacle may be missed");
-    }
-  }
+  result.ends = CalcReaches(query, mates, product.occurrences[fastener.id.index()], diagnostics);
   if (options.turn_deg) {
     auto turn = Turn(options, product, fastener, result.ends, query, &scene);
     if (!turn) {
