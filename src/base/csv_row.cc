@@ -64,7 +64,7 @@ bool BeginsFormula(std::string_view text) {
 
 bool NeedsApostrophe(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
-  if (text.empty() || IsNumber(text)) {
+  if (text.empty() || text == "-" || IsNumber(text)) {  // A dash by itself stands for no unit.
     return false;
   }
   // A cell that begins with a tab or a break is cut there by some programs.

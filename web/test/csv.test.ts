@@ -3,7 +3,7 @@ import { csvText } from "../src/model/csv";
 
 describe("a table that is saved", () => {
   it("has no cell that a spreadsheet takes for a formula", () => {
-    for (const text of ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", " =1", "'=1", "\uff1d1", "-", "--1", "-1e5+A1"]) {
+    for (const text of ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", " =1", "'=1", "\uff1d1", "--1", "-1e5+A1"]) {
       expect(csvText([[text]]).replace(/^"/, "").startsWith("'"), JSON.stringify(text)).toBe(true);
     }
     expect(csvText([['=HYPERLINK("http://x";"y")']])).toBe('"\'=HYPERLINK(""http://x"";""y"")"\n');

@@ -49,13 +49,15 @@ TEST_F(FitTable, LimitsOfClassesOrTheReasonWhyThereAreNone) {
       "1.5 in,H7,hole,25,0,\n"
       "4E+1,H7,hole,25,0,\n"
       ",H7,,,,nominal_mm is missing\n"
-      "-5,H7,hole,,,-5 mm is not a nominal size of ISO 286; give a diameter above 0 and up to 3150 "
-      "mm\n"
-      "0,H7,hole,,,0 mm is not a nominal size of ISO 286; give a diameter above 0 and up to 3150 "
-      "mm\n"
-      "4000,H7,hole,,,4000 mm is not a nominal size of ISO 286; give a diameter above 0 and up to "
+      "-5,H7,hole,,,\"'-5 mm is not a nominal size of ISO 286; give a diameter above 0 and up to "
       "3150 "
-      "mm\n");
+      "mm\"\n"
+      "0,H7,hole,,,\"0 mm is not a nominal size of ISO 286; give a diameter above 0 and up to 3150 "
+      "mm\"\n"
+      "4000,H7,hole,,,\"4000 mm is not a nominal size of ISO 286; give a diameter above 0 and up "
+      "to "
+      "3150 "
+      "mm\"\n");
 }
 
 TEST_F(FitTable, PressFitsOfJoints) {
@@ -137,7 +139,7 @@ TEST_F(FitTable, QuestionsAboutAPegConvertUnits) {
                 "one_point;e;Kx=10 N/mm Kt=50 N m/rad Lg=50 r=10 mu=0.15 eps0'=0.5 theta0=0.01 "
                 "l=10;f;N\n"),
             "kind;id;inputs;output;unit;value;reason\n"
-            "two_point;a;D=2 cm d=19900 um l=10,0;theta2;deg;0.5787850718;\n"
+            "two_point;a;\"D=2 cm d=19900 um l=10,0\";theta2;deg;0.5787850718;\n"
             "statics;d;mu=.3 r=10 l=20 f1=3 N f2=0.005 kN;M;N m;0.106;\n"
             "one_point;e;Kx=10 N/mm Kt=50 N m/rad Lg=50 r=10 mu=0.15 eps0'=0.5 theta0=0.01 "
             "l=10;f;N;4.587155963;\n");
@@ -192,7 +194,7 @@ TEST_F(FitTable, LoadsJamOrSlide) {
 // Spreadsheets of half the world write ; between cells and 40,0 for a number.
 TEST_F(FitTable, TablesMayHaveSemicolonsAndDecimalCommas) {
   EXPECT_EQ(Run("limits", "nominal_mm;class\n40,0;H7\n"),
-            "nominal_mm;class;kind;upper_um;lower_um;reason\n40,0;H7;hole;25;0;\n");
+            "nominal_mm;class;kind;upper_um;lower_um;reason\n\"40,0\";H7;hole;25;0;\n");
   const std::string header =
       "d_F_mm,D_hub_mm,U_eff_diametral_mm,L_mm,mu,E_hub_MPa,nu_hub,E_shaft_MPa,nu_shaft\n";
   EXPECT_PRED_FORMAT2(

@@ -22,7 +22,6 @@ TEST(CsvCell, ThatBeginsLikeAFormulaIsATextToASpreadsheet) {
                         "1"),
             "'\xef\xbc\x9d"
             "1");
-  EXPECT_EQ(MakeCsvCell("-"), "'-");
   EXPECT_EQ(MakeCsvCell("--1"), "'--1");
   EXPECT_EQ(MakeCsvCell("-1e5+A1"), "'-1e5+A1");
 }
@@ -35,6 +34,7 @@ TEST(CsvCell, ThatIsANumberOrAPlainTextStays) {
   EXPECT_EQ(MakeCsvCell("-1.5"), "-1.5");
   EXPECT_EQ(MakeCsvCell("-1,5"), "\"-1,5\"");
   EXPECT_EQ(MakeCsvCell("+3e-6"), "+3e-6");
+  EXPECT_EQ(MakeCsvCell("-"), "-");
   EXPECT_EQ(MakeCsvCell("bolt M8x20"), "bolt M8x20");
   EXPECT_EQ(MakeCsvCell("say \"no\""), "\"say \"\"no\"\"\"");
   EXPECT_EQ(MakeCsvCell("a;b"), "\"a;b\"");

@@ -9,7 +9,7 @@ const kFormula = /^([\t\n\v\f\r]|[ \t\n\v\f\r]*[=+\-@\uff1d\uff0b\uff0d\uff20])/
 
 function textCell(text: string): string {
   const content = text.replace(/^'+/, "");
-  const cell = kFormula.test(content) && !kNumber.test(content) ? `'${text}` : text;
+  const cell = kFormula.test(content) && content !== "-" && !kNumber.test(content) ? `'${text}` : text;
   return /[",;|\t\r\n\v\f]|^ | $/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
 }
 
