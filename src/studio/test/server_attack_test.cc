@@ -65,29 +65,10 @@ std::vector<std::string> MakeHostileValues() {
   return values;
 }
 
-class ServerAttackTest : public ServerTest {
+/** What all attackers have. */
+class AttackTest : public ServerTest {
  protected:
-  ServerAttackTest() : recordings_(testing::SmallBench().recordings_folder) {}
-
-  void SetUp() override {
-    ServerTest::SetUp();
-    record::RecorderOptions options;
-    options.path = recordings_ / (std::string(kForeign) + ".hvasrec");
-    std::filesystem::create_directories(recordings_);
-    auto recorder = record::Recorder::Create(
-        options, {{"product", "secret product"}, {kProductDigestMeta, "another"}});
-    ASSERT_TRUE(recorder.has_value()) << recorder.error().ToString();
-    (*recorder)->AddTick({});
-    ASSERT_TRUE((*recorder)->Finish().has_value());
-    // All of them come once, so that a later connection finds its session.
-    owner_ = JoinAndOpen();
-    guest_cookie_ = Invite("operator");
-  }
-
-  void TearDown() override {
-    ServerTest::TearDown();
-    std::filesystem::remove(recordings_ / (std::string(kForeign) + ".hvasrec"));
-  }
+  AttackTest() : recordings_(testing::SmallBench().recordings_folder) {}
 
   /** The Cookie header of a browser that the owner has invited. */
   std::string Invite(const std::string& role) {
@@ -193,6 +174,30 @@ class ServerAttackTest : public ServerTest {
   std::string guest_cookie_;
 };
 
+/** A server with an open product, and a recording of another one. */
+class ServerAttackTest : public AttackTest {
+ protected:
+  void SetUp() override {
+    ServerTest::SetUp();
+    record::RecorderOptions options;
+    options.path = recordings_ / (std::string(kForeign) + ".hvasrec");
+    std::filesystem::create_directories(recordings_);
+    auto recorder = record::Recorder::Create(
+        options, {{"product", "secret product"}, {kProductDigestMeta, "another"}});
+    ASSERT_TRUE(recorder.has_value()) << recorder.error().ToString();
+    (*recorder)->AddTick({});
+    ASSERT_TRUE((*recorder)->Finish().has_value());
+    // All of them come once, so that a later connection finds its session.
+    owner_ = JoinAndOpen();
+    guest_cookie_ = Invite("operator");
+  }
+
+  void TearDown() override {
+    ServerTest::TearDown();
+    std::filesystem::remove(recordings_ / (std::string(kForeign) + ".hvasrec"));
+  }
+};
+
 TEST_F(ServerAttackTest, ViewerIsObeyedInNothingThatChangesTheWork) {
   std::set<std::string> allowed;
   for (const CommandExample& example : testing::MakeCommandExamples()) {
@@ -278,7 +283,7 @@ blocks:
 )";
 
 /** The same server, which runs a study. */
-class StudyAttackTest : public ServerAttackTest {
+class StudyAttackTest : public AttackTest {
  protected:
   void SetUp() override {
     ServerTest::SetUp();
@@ -301,8 +306,6 @@ class StudyAttackTest : public ServerAttackTest {
     ASSERT_TRUE(server_->Start());
     desk_->Start();
   }
-
-  void TearDown() override { ServerTest::TearDown(); }
 
   hvas::testing::TemporaryFolder study_;
   std::unique_ptr<StudyDesk> desk_;
