@@ -39,7 +39,8 @@ class AnswerLanes {
 
   /** @returns false when kMostWaiting wait already. */
   [[nodiscard]] bool TryPost(Lane lane, JobThread::Job job) {
-    constexpr std::size_t kMostWaiting = 32;  // Of 16 pages, which ask for two things: a choice.
+    constexpr std::size_t kMostWaiting =
+        32;  // Of 12 pages, which ask for two things or three: a choice.
     return threads_[static_cast<std::size_t>(lane)].TryPost(std::move(job), kMostWaiting);
   }
 

@@ -231,8 +231,7 @@ void Hub::CloseRevoked() {
 }
 
 bool Hub::MaySend(Client* client, std::size_t bytes, std::int64_t now_ns) const {
-  constexpr double kBytesOfOne = 1024;  // What a usual command has at most: a choice.
-  const double cost = std::max(1.0, static_cast<double>(bytes) / kBytesOfOne);
+  const double cost = std::max(1.0, static_cast<double>(bytes) / kBytesOfCommand);
   const double elapsed = 1e-9 * static_cast<double>(now_ns - client->last_command_ns);
   client->last_command_ns = now_ns;
   client->allowance =

@@ -61,7 +61,8 @@ class Hub {
   static constexpr std::size_t kMaxUnseen = 8;
   /** Sustained rate for one client (token bucket); a long command counts as several. */
   static constexpr double kCommandsPerSecond = 50;
-  static constexpr double kCommandBurst = 100;  ///< Capacity of the token bucket.
+  static constexpr double kCommandBurst = 100;     ///< Capacity of the token bucket.
+  static constexpr double kBytesOfCommand = 1024;  ///< What a usual one has at most: a choice.
 
   /** @param audit  Outlives this; null: nothing is noted. */
   Hub(Workbench* workbench, std::vector<Example> examples, AuditLog* audit = nullptr);

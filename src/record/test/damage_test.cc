@@ -330,18 +330,8 @@ void Tamper(const std::filesystem::path& path, const char* sql) {
 class DamagedRecord : public ::testing::Test {
  protected:
   DamagedRecord() : file_("damaged.hvas") {
-    const auto recorder =
-        Recorder::Create({file_.path()}, {{"seed", "7"}, {"condition", "hybrid"}});
-    for (int i = 0; i < 2300; ++i) {  // Five chunks, of half a second each but the last.
-      (*recorder)->AddTick(MakeTick(i));
-    }
-    for (int i = 0; i < 3; ++i) {
-      (*recorder)->AddEvent(MakeEvent(i));
-      (*recorder)->AddCommand(MakeCommand(i));
-      (*recorder)->AddFrame(MakeFrame(i));
-    }
-    (*recorder)->AddAttachment({"product", MakeBytes(1, 1000)});
-    EXPECT_TRUE((*recorder)->Finish().has_value());
+    // Five chunks, of half a second each but the last.
+    WriteSampleRecord(file_.path(), {{"seed", "7"}, {"condition", "hybrid"}}, 2300);
   }
 
   TemporaryFile file_;

@@ -3,8 +3,11 @@
 #include <filesystem>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "base/random.h"
 #include "base/test/temporary_folder.h"
+#include "record/recorder.h"
 #include "record/tick_record.h"
 
 namespace hvas::record {
@@ -79,6 +82,21 @@ inline std::vector<std::byte> MakeBytes(std::int64_t number, std::size_t size) {
 
 inline Frame MakeFrame(std::int64_t number) {
   return {number * kTickNs, MakeBytes(number, 200 + static_cast<std::size_t>(number % 100))};
+}
+
+/** Writes a finished record: ticks, three of each other kind, and an attachment "product". */
+inline void WriteSampleRecord(const std::filesystem::path& path, const Meta& meta, int ticks) {
+  const auto recorder = Recorder::Create({path}, meta);
+  for (int i = 0; i < ticks; ++i) {
+    (*recorder)->AddTick(MakeTick(i));
+  }
+  for (int i = 0; i < 3; ++i) {
+    (*recorder)->AddEvent(MakeEvent(i));
+    (*recorder)->AddCommand(MakeCommand(i));
+    (*recorder)->AddFrame(MakeFrame(i));
+  }
+  (*recorder)->AddAttachment({"product", MakeBytes(1, 1000)});
+  EXPECT_TRUE((*recorder)->Finish().has_value());
 }
 
 /** A file name in a folder of its own, removed with its side files at the end. */

@@ -42,17 +42,7 @@ std::string ReadBytes(const std::filesystem::path& path) {
 class RecordOfAStranger : public ::testing::Test {
  protected:
   RecordOfAStranger() : file_("stranger.hvasrec") {
-    const auto recorder = Recorder::Create({file_.path()}, {{"product", "x"}});
-    for (int i = 0; i < 600; ++i) {
-      (*recorder)->AddTick(MakeTick(i));
-    }
-    for (int i = 0; i < 3; ++i) {
-      (*recorder)->AddEvent(MakeEvent(i));
-      (*recorder)->AddCommand(MakeCommand(i));
-      (*recorder)->AddFrame(MakeFrame(i));
-    }
-    (*recorder)->AddAttachment({"product", MakeBytes(1, 1000)});
-    EXPECT_TRUE((*recorder)->Finish().has_value());
+    WriteSampleRecord(file_.path(), {{"product", "x"}}, 600);
   }
 
   /** Reads all that can be read. @returns the first error. */

@@ -3,8 +3,10 @@
 // code, and nobody is locked out. A new command or field is attacked as soon as it is in
 // protocol.json.
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -98,60 +100,69 @@ class AttackTest : public ServerTest {
     }
   }
 
-  static constexpr std::size_t kLast = 999'999;  // Id of a command that ends a series.
-
   /** The id of an answer; the largest number for none, as of what is no JSON. */
   static std::size_t IdOf(const Json& reply) {
     const auto id = reply.find("id");
     return id != reply.end() && id->is_number_unsigned() ? id->get<std::size_t>() : SIZE_MAX;
   }
 
-  /** Sends messages of one browser, in as many connections as the limit of its commands needs.
-   @returns the answers to those that were obeyed. */
-  std::set<std::string> SendAll(const std::string& cookie,
-                                const std::vector<std::pair<std::string, std::string>>& messages) {
-    constexpr std::size_t kAtOnce = 60;  // Of the Hub::kCommandBurst.
+  /** A command of the schema with a hostile value in one of its fields. */
+  struct Attack {
+    std::string name;  ///< Command, or action of a study.
+    std::string rest;  ///< JSON of the message from behind its id to its end.
+  };
+
+  using Prepare = std::function<void(RawClient* client)>;
+
+  /** Sends attacks by one browser, in as many connections as the limit of a connection's commands
+   needs, so that each is read. @param prepare  Called with each connection that has joined.
+   @returns the names of those that were obeyed. */
+  std::set<std::string> SendAll(const std::string& cookie, const std::vector<Attack>& attacks,
+                                const Prepare& prepare = {}) {
     std::set<std::string> obeyed;
-    for (std::size_t begin = 0; begin < messages.size(); begin += kAtOnce) {
+    for (std::size_t begin = 0; begin < attacks.size();) {
       const auto client = JoinWith(cookie);
-      const std::size_t end = std::min(begin + kAtOnce, messages.size());
-      for (std::size_t i = begin; i < end; ++i) {
-        EXPECT_TRUE(client->SendMessage(Message::kText, messages[i].second));
+      if (prepare) {
+        prepare(client.get());
       }
-      client->SendMessage(Message::kText, Json{{"id", kLast}, {"command", "status"}}.dump());
+      std::size_t end = begin;
+      for (double cost = 1; end < attacks.size(); ++end) {  // One is for the last command.
+        const std::string text = "{\"id\":" + std::to_string(end) + attacks[end].rest;
+        cost += std::max(1.0, static_cast<double>(text.size()) / Hub::kBytesOfCommand);
+        if (cost > Hub::kCommandBurst && end > begin) {
+          break;
+        }
+        EXPECT_TRUE(client->SendMessage(Message::kText, text));
+      }
+      client->SendMessage(Message::kText,
+                          Json{{"id", attacks.size()}, {"command", "status"}}.dump());
       const Json last = Await(client.get(), [&](const Json& json) {
         const std::size_t i = IdOf(json);
-        const std::string sent = i < messages.size() ? messages[i].second : "";
-        CheckText(json.dump(), sent);
-        if (json.value("ok", false) && i < messages.size()) {
-          obeyed.insert(messages[i].first);
+        CheckText(json.dump(), i < attacks.size() ? attacks[i].rest : "");
+        EXPECT_EQ(json.dump().find("too many commands"), std::string::npos);
+        if (json.value("ok", false) && i < attacks.size()) {
+          obeyed.insert(attacks[i].name);
         }
-        return i == kLast;
+        return i == attacks.size();
       });
-      EXPECT_FALSE(last.is_null()) << "the connection ended after " << messages[begin].second;
+      EXPECT_FALSE(last.is_null()) << "the connection ended after " << attacks[begin].rest;
+      begin = end;
     }
     return obeyed;
   }
 
-  /** All attacks on all commands: name of the command, text of the message. */
-  static std::vector<std::pair<std::string, std::string>> MakeAttacks() {
-    std::vector<std::pair<std::string, std::string>> attacks;
-    const auto add = [&](const CommandExample& example, const Json& message,
-                         const std::string& field, const std::string& value) {
-      Json rest = message;
-      rest.erase(field);
-      rest["id"] = attacks.size();
-      std::string text = rest.dump();
-      if (!field.empty()) {
-        text.insert(text.size() - 1, "," + Json(field).dump() + ":" + value);
-      }
-      attacks.emplace_back(example.name, text);
-    };
+  /** All attacks on all commands. */
+  static std::vector<Attack> MakeAttacks() {
+    std::vector<Attack> attacks;
     for (const CommandExample& example : testing::MakeCommandExamples()) {
-      add(example, example.message, "", "");
+      attacks.push_back({example.name, "," + example.message.dump().substr(1)});
       for (const std::string& field : example.fields) {
+        Json others = example.message;
+        others.erase(field);
         for (const std::string& value : MakeHostileValues()) {
-          add(example, example.message, field, value);
+          std::string rest = "," + others.dump().substr(1);
+          rest.insert(rest.size() - 1, "," + Json(field).dump() + ":" + value);
+          attacks.push_back({example.name, std::move(rest)});
         }
       }
     }
@@ -225,12 +236,6 @@ TEST_F(ServerAttackTest, GuestWithoutALeaseIsObeyedInNothingThatNeedsOne) {
 }
 
 TEST_F(ServerAttackTest, GuestWithTheLeaseDoesNothingThatIsTheOwners) {
-  const auto guest = JoinWith(guest_cookie_);
-  const Json hello = AwaitEvent(guest.get(), "hello");
-  EXPECT_TRUE(Command(
-      owner_.get(),
-      {{"id", 1}, {"command", "lease"}, {"action", "give"}, {"to", hello["client"]}})["ok"]);
-  std::vector<std::pair<std::string, std::string>> attacks;
   std::set<std::string> owners;
   for (const CommandExample& example : testing::MakeCommandExamples()) {
     if (example.right == "owner") {
@@ -238,32 +243,20 @@ TEST_F(ServerAttackTest, GuestWithTheLeaseDoesNothingThatIsTheOwners) {
     }
   }
   ASSERT_FALSE(owners.empty());
-  for (const auto& attack : MakeAttacks()) {
-    // What sends its lease away, or ends what the test looks at, is tried by the others.
-    if (attack.first == "use" || attack.first == "open" || owners.count(attack.first) > 0) {
-      attacks.push_back(attack);
-    }
-  }
-  for (std::size_t i = 0; i < attacks.size(); ++i) {
-    Json renumbered = Json::parse(attacks[i].second, nullptr, false);
-    if (renumbered.is_object()) {
-      renumbered["id"] = i;
-      attacks[i].second = renumbered.dump();
-    }
-  }
-  for (std::size_t i = 0; i < attacks.size(); ++i) {
-    guest->SendMessage(Message::kText, attacks[i].second);
-    const Json reply = Await(guest.get(), [](const Json& json) { return json.contains("ok"); });
-    ASSERT_FALSE(reply.is_null());
-    if (reply.contains("error") && reply["error"]["message"] == "too many commands") {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      --i;
-      continue;
-    }
-    CheckText(reply.dump(), attacks[i].second);
-    if (owners.count(attacks[i].first) > 0) {
-      EXPECT_FALSE(reply["ok"]) << attacks[i].second;
-    }
+  std::vector<Attack> attacks = MakeAttacks();
+  // What sends its lease away, or ends what the test looks at, is tried by the others.
+  std::erase_if(attacks, [&owners](const Attack& attack) {
+    return attack.name != "use" && attack.name != "open" && owners.count(attack.name) == 0;
+  });
+  const auto give_lease = [this](RawClient* guest) {
+    const Json hello = AwaitEvent(guest, "hello");
+    const Json request{{"id", 1}, {"command", "lease"}, {"action", "request"}};
+    EXPECT_TRUE(Command(owner_.get(), request)["ok"]);
+    const Json give{{"id", 2}, {"command", "lease"}, {"action", "give"}, {"to", hello["client"]}};
+    EXPECT_TRUE(Command(owner_.get(), give)["ok"]);
+  };
+  for (const std::string& name : SendAll(guest_cookie_, attacks, give_lease)) {
+    EXPECT_EQ(owners.count(name), 0u) << name;
   }
   EXPECT_FALSE(AwaitEvent(Join(Role::kOperator).get(), "hello").is_null());
 }
