@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/utf8.h"
 #include "device/drivers/vendor_drivers.h"
 #include "device/drivers/wire_drivers.h"
 #include "device/force_withdrawal.h"
@@ -18,28 +19,14 @@ constexpr int kMostButtons = 32;        // Bits of DeviceState::buttons.
 constexpr std::size_t kMostText = 256;  // [bytes] of a name; USB has 126 characters. A choice.
 constexpr std::size_t kShownText = 40;  // [bytes] of it in a message: a choice.
 
-/** The number of bytes of the character that begins a text, where it is UTF-8 (RFC 3629) and no
- control character; else 0. */
+/** The number of bytes of the character that begins a text, where it is UTF-8 and no control
+ character; else 0. */
 std::size_t MeasureCharacter(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) {
-    return first >= 0x20 && first != 0x7F ? 1 : 0;
-  }
-  const std::size_t size = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < size) {
-    return 0;
-  }
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) {
-      return 0;
-    }
-  }
-  const bool is_out_of_range =
-      (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F) ||
-      (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) > 0x8F);
-  const bool is_control = first == 0xC2 && byte(1) < 0xA0;
-  return is_out_of_range || is_control ? 0 : size;
+  const std::size_t size = MeasureUtf8(text);
+  const auto first = static_cast<unsigned char>(text[0]);
+  const bool is_c0 = first < 0x20 || first == 0x7F;
+  const bool is_c1 = size == 2 && first == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;
+  return is_c0 || is_c1 ? 0 : size;
 }
 
 /** A text as it may be printed: what is no character is a question mark. */

@@ -6,9 +6,8 @@
 namespace hvas::device {
 namespace {
 
-// A sample of this age still counts; then what came of it fades in so long. Choices, as the
-// vendors' threads hold a wrench (docs/realtime.md).
-constexpr std::int64_t kAgeHeldNs = 20'000'000;
+// What came of a sample fades in so long after kAgeHeldNs. A choice, as the vendors' threads hold a
+// wrench (docs/realtime.md).
 constexpr std::int64_t kAgeDecayNs = 50'000'000;
 constexpr double kVelocityFade = 0.7;  // a tick, while there is no new sample
 

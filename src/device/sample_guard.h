@@ -6,6 +6,10 @@
 
 namespace hvas::device {
 
+/** A sample or a wrench of this age still counts [ns]; a device that is given nothing for longer
+ lets go. A choice, as the vendors' threads hold a wrench (docs/realtime.md). */
+inline constexpr std::int64_t kAgeHeldNs = 20'000'000;
+
 /** Judges what a vendor's software gives before anybody believes it: finite, fresh, and no further
  from the last sample than a hand moves. Every driver passes its samples through one. RT-safe. */
 class SampleGuard {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "device/device.h"
+#include "device/sample_guard.h"
 #include "haptics/buzz_detector.h"
 #include "haptics/kick_detector.h"
 #include "haptics/thermal_limit.h"
@@ -123,10 +124,10 @@ class SafetyGate {
   explicit SafetyGate(const SafetyLimits& limits) noexcept;
 
   /** Whether a device was without a write for so long that it has let go of its force, as drivers
-   (device::ForceHold) and the vendors' watchdogs do after 20 ms: what is written then finds a hand
-   that feels nothing. Also where the clock went back. */
+   (device::ForceHold) and the vendors' watchdogs do after device::kAgeHeldNs: what is written then
+   finds a hand that feels nothing. Also where the clock went back. */
   [[nodiscard]] static constexpr bool IsStall(std::int64_t since_write_ns) noexcept {
-    return since_write_ns < 0 || since_write_ns > 20'000'000;
+    return since_write_ns < 0 || since_write_ns > device::kAgeHeldNs;
   }
 
   /** Returns the wrench that may go to the device. Never not finite, never beyond the limits. */

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "app/test/run_hvas.h"
+#include "base/test/await_true.h"
 #include "base/test/temporary_folder.h"
 
 namespace hvas::app {
@@ -67,7 +68,7 @@ class NotedProcess {
     if (::waitpid(process_, &status, WUNTRACED) != process_ || !WIFSTOPPED(status)) {
       return false;
     }
-    std::this_thread::sleep_for(gap);
+    std::this_thread::sleep_for(gap);  // What is tested: for so long it does stand still.
     const std::size_t before = ReadNotes().size();
     ::kill(process_, SIGCONT);
     constexpr std::size_t kMore = 100;
@@ -78,14 +79,8 @@ class NotedProcess {
  private:
   template <typename Holds>
   [[nodiscard]] bool WaitUntil(Holds holds) const {
-    constexpr int kMostLooks = 6000;
-    for (int look = 0; look < kMostLooks; ++look) {
-      if (::access(file_.c_str(), R_OK) == 0 && holds(ReadNotes())) {
-        return true;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+    return hvas::testing::AwaitTrue(
+        [&] { return ::access(file_.c_str(), R_OK) == 0 && holds(ReadNotes()); });
   }
 
   TemporaryFolder folder_;

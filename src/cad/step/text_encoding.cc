@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/utf8.h"
 #include "cad/encoding.h"
 
 namespace hvas::cad {
@@ -53,30 +54,6 @@ std::string Utf16ToUtf8(std::u16string_view units) {
 
 std::uint8_t ByteAt(std::string_view bytes, std::size_t i) {
   return static_cast<std::uint8_t>(bytes[i]);
-}
-
-/** Length of the UTF-8 sequence that starts at `i`; 0 where there is none (RFC 3629). */
-std::size_t SequenceLength(std::string_view bytes, std::size_t i) {
-  const std::uint8_t lead = ByteAt(bytes, i);
-  if (lead < 0x80) {
-    return 1;
-  }
-  const std::size_t length = lead >= 0xC2 && lead < 0xE0   ? 2
-                             : lead >= 0xE0 && lead < 0xF0 ? 3
-                             : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                           : 0;
-  if (length == 0 || i + length > bytes.size()) {
-    return 0;
-  }
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((ByteAt(bytes, i + k) & 0xC0U) != 0x80) {
-      return 0;
-    }
-  }
-  const std::uint8_t second = ByteAt(bytes, i + 1);
-  const bool is_overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
-  const bool is_beyond = (lead == 0xED && second >= 0xA0) || (lead == 0xF4 && second >= 0x90);
-  return is_overlong || is_beyond ? 0 : length;
 }
 
 /** Shift-JIS that no text in a Latin alphabet would be taken for. */
@@ -352,7 +329,7 @@ bool IsUtf8(std::string_view bytes) {
       i += sizeof(eight);
       continue;
     }
-    const std::size_t length = SequenceLength(bytes, i);
+    const std::size_t length = MeasureUtf8(bytes, i);
     if (length == 0) {
       return false;
     }
