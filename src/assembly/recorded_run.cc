@@ -48,8 +48,8 @@ Result<std::unique_ptr<record::Recorder>> MakeRunRecorder(const Model& model,
   for (std::size_t hand = 0; hand < std::max(session::kHandsOfMeta, hands); ++hand) {
     meta[session::MakeDeviceKey(hand)] = hand < hands ? options.devices[hand] : std::string();
   }
-  if (options.person != simulation::PersonKind::kCareful) {
-    meta["person"] = simulation::ToString(options.person);
+  if (options.person) {
+    meta["person"] = simulation::ToString(*options.person);
   }
   return MakeRecorder(model, recorder, meta);
 }

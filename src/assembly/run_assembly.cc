@@ -16,11 +16,8 @@ using simulation::PartResult;
 
 /** Explains why a part is not in its place after a run that was stopped before its turn ended. */
 std::string ExplainMissing(const Model& model, product::OccurrenceId id) {
-  const auto& gaps = model.sequence.gaps;
-  const auto gap =
-      std::find_if(gaps.begin(), gaps.end(),
-                   [id](const simulation::SequenceGap& item) { return item.occurrence == id; });
-  return gap != gaps.end() ? gap->reason : "the run was stopped before its turn ended";
+  const std::string reason = simulation::FindGapReason(model.sequence, id);
+  return reason.empty() ? "the run was stopped before its turn ended" : reason;
 }
 
 /** Adds the parts that a stopped run did not come to. */

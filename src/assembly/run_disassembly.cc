@@ -60,7 +60,7 @@ class DisassemblySetup final : public RunSetup {
   DisassemblySetup(std::shared_ptr<const Model> model, std::vector<Hand> hand,
                    const DisassemblyPlan* plan, simulation::Sink* downstream)
       : RunSetup(std::move(model), std::move(hand)),
-        run_(&simulation(), plan, ListPersons().front(), downstream) {
+        run_(&simulation(), plan, ListMovers().front(), downstream) {
     simulation::PutAllInPlace(&simulation());
   }
 

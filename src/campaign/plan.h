@@ -95,7 +95,14 @@ struct Plan {
   std::vector<FitVariant> fits;
   std::vector<SizeVariant> sizes;
   std::vector<MaterialVariant> materials;
-  std::vector<simulation::PersonKind> persons;
+  /** How the simulated person works; none: a guided hand moves the parts. */
+  std::vector<std::optional<simulation::PersonKind>> persons;
+
+  /** The word of a person in a plan. */
+  [[nodiscard]] static const char* NamePerson(const std::optional<simulation::PersonKind>& person) {
+    return person ? simulation::ToString(*person) : "guided";
+  }
+
   Seeds seeds;
   double press_force{0};  ///< Largest force of the press [N]; 0: without limit.
   bool may_yield{true};   ///< Whether a product with a part beyond its elastic limit is complete.

@@ -19,7 +19,7 @@ using simulation::PartState;
 using simulation::SequenceStep;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked", "pending"};
-constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return"};
+constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return", "assume"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {
   return Fail(ErrorCode::kUnreadable, fmt::format("{} has no valid \"{}\".", what, field));

@@ -16,8 +16,6 @@ using product::OccurrenceId;
 
 namespace {
 
-constexpr int kMostTries = 3;  // Of a part by simulated persons: one, and two more. A choice.
-
 /** Whether a part hangs together with the base, or with a fixture, through neighbours. */
 bool IsConnectedWithBase(const Model& model, OccurrenceId id) {
   std::vector<OccurrenceId> all;
@@ -37,11 +35,11 @@ bool IsSinglePart(const SequenceStep& step) {
 
 }  // namespace
 
-AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
+AssemblyRun::AssemblyRun(Simulation* simulation, const TaskOperators& movers, Sink* downstream)
     : PartRun(simulation, downstream), passages_(simulation->model()) {
-  for (std::size_t hand = 0; hand < persons.size(); ++hand) {
-    if (persons[hand] != nullptr) {
-      workers_.push_back({persons[hand], hand, nullptr, 0});
+  for (std::size_t hand = 0; hand < movers.size(); ++hand) {
+    if (movers[hand] != nullptr) {
+      workers_.push_back({movers[hand], hand, nullptr, 0});
     }
   }
   if (workers_.empty()) {
@@ -81,9 +79,9 @@ const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const
 }
 
 std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
-  const SimulatedPerson* person = worker.person;
+  const TaskOperator* mover = worker.mover;
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
-  if (!dropped && person == nullptr) {
+  if (!dropped && mover == nullptr) {
     return "was not taken up";
   }
   if (const OccurrenceId missing = physics().FindMissingPartner(step); missing.is_valid()) {
@@ -96,9 +94,8 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
                                                                 units::ToMm(metrics.insertion))
                                                   : std::string();
-  const std::string tries = person != nullptr
-                                ? fmt::format("gave up after {} searches", person->searches())
-                                : std::string("was let go elsewhere");
+  const std::string tries =
+      mover != nullptr ? mover->DescribeEffort() : std::string("was let go elsewhere");
   const char* crossed = metrics.is_thread_crossed ? ", with its thread crossed" : "";
   return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
 }
@@ -111,17 +108,14 @@ std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& work
                                     bool was_seated) {
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = true;
-  turn.is_seated = was_seated;
-  turn.neighbours_in_place = CountNeighboursInPlace(step);
   if (was_seated) {
     const bool is_unit = !step.members.empty() && step.kind == SequenceStep::Kind::kInsert;
     const std::size_t leader = step.occurrence.index();
-    has_touched_[leader] = is_unit ? turn.neighbours_in_place > 0 : has_touched_[leader];
+    has_touched_[leader] = is_unit ? CountNeighboursInPlace(step) > 0 : has_touched_[leader];
     return {};
   }
   if (turn.tries <= 1) {
-    turn.reason = ExplainFailure(step, worker);
-    return turn.reason;
+    return ExplainFailure(step, worker);
   }
   return fmt::format("{}; tried {} times", turn.reason, turn.tries);
 }
@@ -173,6 +167,26 @@ std::string AssemblyRun::MakeNote(const PartResult& result) const {
   return note;
 }
 
+bool AssemblyRun::TryAgain(const SequenceStep& step, Worker* worker) {
+  Turn& turn = turns_[IndexOf(step)];
+  const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
+  const bool has_failed =
+      step.kind == SequenceStep::Kind::kInsert && dropped && !dropped->was_seated;
+  if (!has_failed || worker->mover == nullptr || turn.tries >= worker->mover->most_tries()) {
+    return false;
+  }
+  turn.reason = turn.tries == 1 ? ExplainFailure(step, *worker) : turn.reason;
+  AddHold(step.occurrence);
+  return Begin(step, worker);
+}
+
+void AssemblyRun::AssumeStep(const SequenceStep& step) {
+  for (const OccurrenceId id : UnitOf(step)) {
+    Assume(id);
+    Update(id);
+  }
+}
+
 void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   const Model& model = this->model();
   PartResult& result = ResultOf(step.occurrence);
@@ -199,19 +213,25 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     PartResult& other = ResultOf(member);
     other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
   }
+  if (!was_seated && worker.mover != nullptr && step.kind == SequenceStep::Kind::kInsert) {
+    AssumeStep(step);
+  }
   Update(step.occurrence);
+  TellPart(step.occurrence, dropped ? dropped->t_ns : 0);
+}
+
+void AssemblyRun::TellPart(OccurrenceId id, std::int64_t t_ns) {
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
-    on_part({results_.size(), static_cast<std::size_t>(seated), CountParts(model),
-             dropped ? dropped->t_ns : 0},
-            ResultOf(step.occurrence));
+    on_part({results_.size(), static_cast<std::size_t>(seated), CountParts(model()), t_ns},
+            ResultOf(id));
   }
 }
 
 bool AssemblyRun::HasFinished(const Worker& worker) const {
-  if (worker.person != nullptr) {
-    return worker.person->finished_count() != worker.finished_before;
+  if (worker.mover != nullptr) {
+    return worker.mover->finished_count() != worker.finished_before;
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
   const OccurrenceId id = worker.step->occurrence;
@@ -225,7 +245,7 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
 
 bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
-  return worker.person != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
+  return worker.mover != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
          dropped->hand != worker.hand;
 }
 
@@ -273,21 +293,6 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
   return free;
 }
 
-SequenceStep AssemblyRun::PlanAgain(const SequenceStep& step) const {
-  contact::Scene scene;
-  const SequenceInput input = MakeSequenceInput(model(), &scene);
-  Extraction extraction(input, &model().sequence);
-  Unit moved{step.occurrence};
-  moved.insert(moved.end(), step.members.begin(), step.members.end());
-  for (const Body& body : model().bodies) {
-    scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
-    extraction.SetPresent({body.occurrence},
-                          physics().placement(body.occurrence) == Placement::kPlaced);
-  }
-  extraction.SetPresent(moved, true);
-  return extraction.TryRemove(moved).value_or(step);
-}
-
 bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
   SequenceStep possible = step;
@@ -296,25 +301,21 @@ bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
   if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
     possible = MakeTableStep(model(), physics().parts(), step.occurrence, TakeExtent::kWhole);
   }
-  const bool is_repeated = turns_[IndexOf(step)].is_finished;
-  if (worker->person != nullptr && is_repeated && step.kind == SequenceStep::Kind::kInsert) {
-    possible = PlanAgain(possible);
-  }
   for (std::size_t hand = 0; hand < hand_count(); ++hand) {
-    if (worker->person == nullptr || hand == worker->hand) {
+    if (worker->mover == nullptr || hand == worker->hand) {
       physics().Prepare(possible, hand);
     }
   }
-  if (worker->person != nullptr) {
+  if (worker->mover != nullptr) {
     dropped_[possible.occurrence.index()].reset();
-    worker->finished_before = worker->person->finished_count();
-    if (!worker->person->Assign(MakeTask(possible))) {
+    worker->finished_before = worker->mover->finished_count();
+    if (!worker->mover->Assign(MakeTask(possible))) {
       return false;
     }
   }
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = false;
-  turn.tries += worker->person != nullptr ? 1 : 0;
+  turn.tries += worker->mover != nullptr ? 1 : 0;
   worker->step = &step;
   last_worker_ = static_cast<std::size_t>(worker - workers_.data());
   return true;
@@ -342,39 +343,6 @@ void AssemblyRun::FinishAll() {
   is_done_ = true;
 }
 
-bool AssemblyRun::HasFreePerson() const {
-  return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) {
-    return worker.person != nullptr && worker.step == nullptr;
-  });
-}
-
-const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
-  const auto& steps = model().sequence.steps;
-  const std::size_t end = std::min({next_step_, end_step_, steps.size()});
-  // What goes into a subassembly that is on its shelf has to wait until this is in its place.
-  std::size_t begin = first_step_;
-  for (std::size_t i = begin; i < end && !is_at_end; ++i) {
-    begin = steps[i].kind == SequenceStep::Kind::kPark ? i + 1 : begin;
-  }
-  for (std::size_t i = begin; i < end; ++i) {
-    const SequenceStep& step = steps[i];
-    const Turn& turn = turns_[i];
-    const bool is_insertion = step.kind == SequenceStep::Kind::kInsert;
-    const bool is_return = step.kind == SequenceStep::Kind::kReturn && !IsInVain(step);
-    if (!turn.is_finished || turn.is_seated || !(is_insertion || is_return) ||
-        turn.tries >= (is_at_end ? kMostTries : kMostTries - 1) ||
-        physics().placement(step.occurrence) == Placement::kPlaced ||
-        physics().FindMissingPartner(step).is_valid()) {
-      continue;
-    }
-    const bool is_held_better = CountNeighboursInPlace(step) > turn.neighbours_in_place;
-    if (is_held_better || (is_at_end && turn.tries < kMostTries - 1)) {
-      return &step;
-    }
-  }
-  return nullptr;
-}
-
 bool AssemblyRun::DoNext(const SequenceStep& step) {
   if (turns_[next_step_].is_finished || IsInPlaceAlready(step)) {
     return true;
@@ -386,6 +354,11 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
   if (IsInVain(step)) {
     return true;
   }
+  if (step.kind == SequenceStep::Kind::kAssume) {
+    ResultOf(step.occurrence).reason = FindGapReason(model().sequence, step.occurrence);
+    AssumeStep(step);
+    return true;
+  }
   if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
     physics().PlaceInFixture(step.occurrence);
     has_touched_[step.occurrence.index()] = true;
@@ -393,7 +366,7 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
     ResultOf(step.occurrence).note = MakeNote(ResultOf(step.occurrence));
     return true;
   }
-  const bool is_refused = worker->person != nullptr && step.kind == SequenceStep::Kind::kInsert &&
+  const bool is_refused = worker->mover != nullptr && step.kind == SequenceStep::Kind::kInsert &&
                           physics().FindMissingPartner(step).is_valid();
   if (is_refused || IsDoneByAnother(step, *worker)) {
     FinishStep(step, *worker);
@@ -410,23 +383,13 @@ void AssemblyRun::Advance() {
     passages_.Look(physics(), hand);
   }
   for (Worker& worker : workers_) {
-    if (worker.step != nullptr && HasFinished(worker)) {
+    if (worker.step != nullptr && HasFinished(worker) && !TryAgain(*worker.step, &worker)) {
       FinishStep(*std::exchange(worker.step, nullptr), worker);
     }
   }
   const auto& steps = model().sequence.steps;
-  for (;;) {
-    const bool is_at_end = next_step_ >= std::min(end_step_, steps.size());
-    if (const SequenceStep* again = HasFreePerson() ? FindStepToRepeat(is_at_end) : nullptr) {
-      Worker* worker = FindWorkerFor(*again);
-      if (worker == nullptr || !Begin(*again, worker)) {
-        return;
-      }
-    } else if (is_at_end) {
-      break;
-    } else if (DoNext(steps[next_step_])) {
-      ++next_step_;
-    } else {
+  for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
+    if (!DoNext(steps[next_step_])) {
       return;
     }
   }

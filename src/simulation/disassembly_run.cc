@@ -20,9 +20,9 @@ void PutAllInPlace(Simulation* simulation) {
 }
 
 DisassemblyRun::DisassemblyRun(Simulation* simulation, const DisassemblyPlan* plan,
-                               SimulatedPerson* person, Sink* downstream)
-    : PartRun(simulation, downstream), plan_(*plan), person_(person) {
-  if (person_ == nullptr) {
+                               TaskOperator* mover, Sink* downstream)
+    : PartRun(simulation, downstream), plan_(*plan), mover_(mover) {
+  if (mover_ == nullptr) {
     simulation->physics().AllowTakingOut(0);
   }
 }
@@ -47,15 +47,15 @@ OccurrenceId DisassemblyRun::FindWall(const Removal& removal) const {
 
 bool DisassemblyRun::Begin(const Removal& removal) {
   physics().Prepare(removal.step);
-  if (person_ == nullptr) {
+  if (mover_ == nullptr) {
     return true;
   }
-  finished_before_ = person_->finished_count();
-  return person_->Assign(MakeTask(removal.step));
+  finished_before_ = mover_->finished_count();
+  return mover_->Assign(MakeTask(removal.step));
 }
 
 bool DisassemblyRun::HasFinished(const Removal& removal) const {
-  return person_ != nullptr ? person_->finished_count() != finished_before_ : IsOut(removal);
+  return mover_ != nullptr ? mover_->finished_count() != finished_before_ : IsOut(removal);
 }
 
 std::string DisassemblyRun::ExplainFailure(const Removal& removal) const {
@@ -116,7 +116,7 @@ void DisassemblyRun::Advance() {
       }
       is_busy_ = false;
       Finish(removal, IsOut(removal) ? std::string() : ExplainFailure(removal));
-    } else if (const OccurrenceId wall = FindWall(removal); wall.is_valid() && person_ != nullptr) {
+    } else if (const OccurrenceId wall = FindWall(removal); wall.is_valid() && mover_ != nullptr) {
       Finish(removal,
              fmt::format("{}, which has to come out first, is in its place", PathOf(wall)));
     } else {

@@ -151,6 +151,7 @@ std::optional<Unit> GapExplainer::FindEarlier() const {
         present = {step.occurrence};
         break;
       case SequenceStep::Kind::kInsert:
+      case SequenceStep::Kind::kAssume:
         if (step.occurrence == reason_.occurrence) {
           return present;
         }

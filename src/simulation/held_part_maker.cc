@@ -422,12 +422,14 @@ spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const 
 
 bool HeldPartMaker::IsMeantBefore(OccurrenceId id, OccurrenceId later) const {
   const auto& gaps = model_.sequence.gaps;
-  const bool is_given_up = std::any_of(
-      gaps.begin(), gaps.end(), [id](const SequenceGap& gap) { return gap.occurrence == id; });
-  if (is_given_up) {
+  const auto& steps = model_.sequence.steps;
+  const bool has_step = std::any_of(
+      steps.begin(), steps.end(), [id](const SequenceStep& step) { return step.occurrence == id; });
+  if (!has_step && std::any_of(gaps.begin(), gaps.end(),
+                               [id](const SequenceGap& gap) { return gap.occurrence == id; })) {
     return true;
   }
-  for (const SequenceStep& step : model_.sequence.steps) {
+  for (const SequenceStep& step : steps) {
     if (step.occurrence == later && step.kind == SequenceStep::Kind::kInsert) {
       return false;
     }

@@ -128,13 +128,18 @@ void GiveRoles(Model* model) {
   }
 }
 
-/** Has the parts without a step among the gaps, and no others: with another base, or another order,
- they are not those that were found. */
+/** Has the parts that no step brings in among the gaps, and no others: with another base, or
+ another order, they are not those that were found. */
 void MatchGaps(Model* model) {
   std::vector<bool> is_in_step(model->bodies.size(), false);
   for (const SequenceStep& step : model->sequence.steps) {
     for (const OccurrenceId part : UnitOf(step)) {
       is_in_step[part.index()] = true;
+    }
+  }
+  for (const SequenceStep& step : model->sequence.steps) {
+    if (step.kind == SequenceStep::Kind::kAssume) {
+      is_in_step[step.occurrence.index()] = false;
     }
   }
   std::vector<SequenceGap>& gaps = model->sequence.gaps;

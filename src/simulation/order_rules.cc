@@ -117,7 +117,8 @@ class RuleFinder {
   void FindWays(std::size_t m) {
     FreeMove& move = rules_.moves[m];
     OrderedWay& planned = move.ways.front();
-    const bool is_straight = planned.step.way.empty();
+    const bool is_straight =
+        planned.step.way.empty() && planned.step.kind != SequenceStep::Kind::kAssume;
     // A way on which parts give meets what gives.
     if (!is_straight || move.aside || !FindObstacles(m, &planned) ||
         (!planned.moves.empty() && planned.moves.front() < m)) {

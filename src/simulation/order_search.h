@@ -10,15 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/arm.h"
 #include "simulation/hand_time.h"
 #include "simulation/order_rules.h"
 
 namespace hvas::simulation {
-
-/** What a hand pushes or carries at most; the rest is for a press, a mallet or a hoist [N]. A
- * choice.
- */
-inline constexpr double kMostHandForce = 100;
 
 /** What makes an order worse: how often each happens in it, and what it asks of the hand. */
 struct OrderCounts {

@@ -31,6 +31,7 @@ std::pair<const T&, const T&> InOrder(bool is_in_order, const T& a, const T& b) 
 PartRun::PartRun(Simulation* simulation, Sink* downstream)
     : dropped_(simulation->model().bodies.size()),
       has_touched_(simulation->model().bodies.size(), false),
+      is_assumed_(simulation->model().bodies.size(), false),
       simulation_(simulation),
       downstream_(downstream) {
   for (const Body& body : simulation_->model().bodies) {
@@ -64,6 +65,7 @@ void PartRun::OnFlight(const std::vector<FlightTick>& ticks) {
 
 void PartRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
+    is_assumed_[event.occurrence.index()] = false;
     dropped_[event.occurrence.index()] = event;
     if (event.was_seated) {
       SequenceStep alone;
@@ -330,9 +332,16 @@ void PartRun::AddHold(OccurrenceId id) {
   result.arrival_angle = metrics.arrival_angle;
 }
 
+void PartRun::Assume(OccurrenceId id) {
+  physics().PlaceInFixture(id);
+  is_assumed_[id.index()] = true;
+}
+
 void PartRun::Update(OccurrenceId id) {
   PartResult& result = ResultOf(id);
-  result.is_seated = physics().placement(id) == Placement::kPlaced;
+  const bool is_placed = physics().placement(id) == Placement::kPlaced;
+  result.is_assumed = is_placed && is_assumed_[id.index()];
+  result.is_seated = is_placed && !result.is_assumed;
   result.has_touched = result.is_seated && has_touched_[id.index()];
   const spatial::Pose& X_WB = physics().pose(id);
   const spatial::Pose& X_goal = model().bodies[id.index()].X_WB_goal;

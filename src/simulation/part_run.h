@@ -12,8 +12,8 @@
 #include "simulation/executors.h"
 #include "simulation/passage_watch.h"
 #include "simulation/pressed_pairs.h"
-#include "simulation/simulated_person.h"
 #include "simulation/simulation.h"
+#include "simulation/task_operator.h"
 
 namespace hvas::simulation {
 
@@ -42,6 +42,9 @@ struct PartAllowance {
 struct PartResult {
   product::OccurrenceId occurrence;
   bool is_seated{false};
+  /** It could not be brought to its place, and was put where the drawing has it, so that the parts
+   after it could be tried. */
+  bool is_assumed{false};
   std::string reason;                     ///< Why not, when it is not seated.
   std::string note;                       ///< What was odd about it although it is; may be empty.
   std::vector<PartAllowance> allowances;  ///< It is in its place only by these.
@@ -80,8 +83,8 @@ struct AssemblyProgress {
   std::int64_t t_ns{0};  ///< Session time.
 };
 
-/** The simulated persons, by hand; null where a real one has that hand, or there is none. */
-using Persons = std::array<SimulatedPerson*, haptics::kMaxHands>;
+/** What does the tasks, by hand; null where a real person has that hand, or there is none. */
+using TaskOperators = std::array<TaskOperator*, haptics::kMaxHands>;
 
 /** A run of a simulation in which parts have their turn one after the other, with the results of
  each: the base of AssemblyRun and DisassemblyRun. As a Sink the run stands between the loops and
@@ -132,6 +135,8 @@ class PartRun : public Sink {
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
   /** Adds what the last hold of a part amounted to, if there was one, to its result. */
   void AddHold(product::OccurrenceId id);
+  /** Puts a part where the drawing has it although nothing has brought it there. */
+  void Assume(product::OccurrenceId id);
   /** Sets where a part is now in its result. */
   void Update(product::OccurrenceId id);
   [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
@@ -169,6 +174,7 @@ class PartRun : public Sink {
   std::array<haptics::HoldState, haptics::kMaxHands> states_{};  ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   std::vector<bool> has_touched_;  ///< PartResult::has_touched, by OccurrenceId.
+  std::vector<bool> is_assumed_;   ///< PartResult::is_assumed, by OccurrenceId.
   std::vector<PartResult> results_;
   bool is_done_{false};
 

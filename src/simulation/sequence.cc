@@ -51,8 +51,10 @@ class Planner {
    else there, then set aside until its turn. */
   void PutAside(const Unit& unit, SequenceStep step, Unit* rest, std::vector<SequenceStep>* removed,
                 Sequence* sequence);
-  /** Gives up the part whose absence lets most others come out, or the smallest. */
-  void GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence);
+  /** Gives up the part whose absence lets most others come out, or the smallest: it is assumed to
+   come out. */
+  void GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
+                 Sequence* sequence);
   /** Parts of which others would hang in the air if they came out before them, sorted. */
   [[nodiscard]] Unit ListConnecting(const Unit& rest) const;
   /** Parts of `rest` that are connected with what stays only by this one: what stays are the base
@@ -180,7 +182,8 @@ bool Planner::TakeOutBody(BlockingGraph* graph, Unit* rest, std::vector<Sequence
   return false;
 }
 
-void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
+void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
+                        Sequence* sequence) {
   const OccurrenceId blocker = graph->FindGreatestBlocker();
   const OccurrenceId id = blocker.is_valid() ? blocker : rest->front();
   std::string reason =
@@ -190,6 +193,10 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
                           BlockingGraph::kMostWays);
   }
   sequence->gaps.push_back({id, std::move(reason)});
+  SequenceStep assumed;
+  assumed.kind = SequenceStep::Kind::kAssume;
+  assumed.occurrence = id;
+  removed->push_back(std::move(assumed));
   extraction_.SetPresent({id}, false);
   std::erase(*rest, id);
 }
@@ -278,7 +285,7 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
     removed->push_back(std::move(*bending));
     return;
   }
-  GiveUpOne(&**graph, rest, sequence);
+  GiveUpOne(&**graph, rest, removed, sequence);
 }
 
 OccurrenceId Planner::ChooseBase(const Unit& rest) const {
@@ -324,29 +331,8 @@ Sequence Planner::Plan() {
       all.push_back(occurrence.id);
     }
   }
-  // A part that is given up late was there when others came out: what it held, or stood in the way
-  // of. The order is found once more without it from the beginning, until none is given up.
-  constexpr int kMostRounds = 5;  // The last one counts with what it gave up: a choice.
-  for (int round = 1; round <= kMostRounds && !input_.stop.stop_requested(); ++round) {
-    const std::size_t given_up = sequence.gaps.size();
-    sequence.steps.clear();
-    planned_ = 0;
-    extraction_.Restart();
-    extraction_.SetPresent(all, true);
-    PlanLevel(all, &sequence);
-    if (sequence.gaps.size() == given_up) {
-      break;
-    }
-    std::erase_if(all, [&](OccurrenceId id) {
-      const bool is_gap =
-          std::any_of(sequence.gaps.begin(), sequence.gaps.end(),
-                      [id](const SequenceGap& gap) { return gap.occurrence == id; });
-      if (is_gap) {
-        extraction_.SetPresent({id}, false);
-      }
-      return is_gap;
-    });
-  }
+  extraction_.SetPresent(all, true);
+  PlanLevel(all, &sequence);
   sequence.overlaps = extraction_.overlaps();
   sequence.gives = extraction_.gives();
   sequence.screws = extraction_.screws();
@@ -407,6 +393,12 @@ std::vector<contact::Allowance> ListAllowances(std::span<const DrawnOverlap> ove
                           is_a ? overlap.passing_b : overlap.passing_a});
   }
   return allowances;
+}
+
+std::string FindGapReason(const Sequence& sequence, OccurrenceId id) {
+  const auto gap = std::find_if(sequence.gaps.begin(), sequence.gaps.end(),
+                                [id](const SequenceGap& item) { return item.occurrence == id; });
+  return gap == sequence.gaps.end() ? std::string() : gap->reason;
 }
 
 bool IsBase(const Sequence& sequence, OccurrenceId id) {

@@ -27,6 +27,7 @@ struct SequenceStep {
     kRemove,  ///< Out of its place again, by the way it came. Not planned: a person's own wish.
     kAside,   ///< A part goes from its place to one beside it, where the next part can pass it.
     kReturn,  ///< It goes back from there into its place.
+    kAssume,  ///< No way in was found: the part is put where the drawing has it, for the others.
   };
   Kind kind{Kind::kInsert};
   product::OccurrenceId occurrence;            ///< The part, or the base of the subassembly.
@@ -115,7 +116,8 @@ struct FaceRelief {
   double depth{0};        ///< [m]
 };
 
-/** A part that cannot be brought in, and why. */
+/** A part that cannot be brought in, and why. Where the order has its place, a step kAssume puts it
+ there. */
 struct SequenceGap {
   product::OccurrenceId occurrence;
   std::string reason;
@@ -147,6 +149,9 @@ struct Sequence {
 /** How many looks at a part the search for ways that turn takes at most: half a minute to a minute
  and a half. Of 22 pairs drawn for it, 20 have their way within 60,000, two within 1,900,000. */
 inline constexpr std::uint64_t kWayLooks = 2'000'000;
+
+/** Why a part cannot be brought in; empty where no reason is known. */
+[[nodiscard]] std::string FindGapReason(const Sequence& sequence, product::OccurrenceId id);
 
 /** Whether other parts are put onto this one: in the fixture, or in a subassembly. */
 [[nodiscard]] bool IsBase(const Sequence& sequence, product::OccurrenceId id);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulation/arm_hand.h"
+#include <fmt/format.h>
+
+#include "simulation/arm.h"
 #include "simulation/person_habits.h"
 
 namespace hvas::simulation {
@@ -16,7 +18,6 @@ constexpr double kHandSettleTime = 0.25;  // [s]; the hand rests when it has hea
 constexpr double kRestTime = 1.0;         // [s] without pressing, before it draws the part out
 constexpr double kSlackTime = 0.08;       // [s] in which the arm goes slack
 constexpr double kReleaseTime = 0.2;      // [s]
-constexpr double kShortestReach = 0.35;   // [s]
 constexpr double kPutDownGap = 2e-3;      // [m] above the table, where a part is let go
 constexpr double kLearnTime = 0.3;        // [s] in which a weight is learned
 constexpr double kSwings = 5e-3;          // [m] from its hand; no weight stretches it further
@@ -31,12 +32,7 @@ constexpr double kTurned = 0.05;          // [rad]; as good as turned
 constexpr double kTurning = 0.02;         // [rad/s]; slower than that, the hand does not turn
 constexpr double kCalmTime = 0.2;         // [s]; what swings is only still for a moment
 constexpr double kMostWait = 1.5;         // [s] for a hand to come, and what it holds to hang still
-constexpr double kLeastOfTravel = 0.2;    // Of the travel: where less of it is distance, it turns.
 constexpr double kSenseTime = 0.08;       // [s] in which it notices how fast its hand is
-
-double MinimumJerk(double s) {
-  return s * s * s * (10 + s * (-15 + 6 * s));
-}
 
 }  // namespace
 
@@ -72,6 +68,10 @@ SimulatedPerson::SimulatedPerson(const PersonOptions& options, std::uint64_t see
   }
 }
 
+std::string SimulatedPerson::DescribeEffort() const {
+  return fmt::format("gave up after {} searches", searches());
+}
+
 void SimulatedPerson::Begin(const PersonTask& task) noexcept {
   task_ = task;
   gave_up_ = false;
@@ -84,67 +84,28 @@ void SimulatedPerson::Begin(const PersonTask& task) noexcept {
   }
   const spatial::Pose& X_WG = task.takes_out ? task.X_WG_goal : task.X_WG_start;
   StartReaches(Phase::kReach);
-  AddReach(X_WG.p(), X_WG.q(), 1.5 * options_.carry_speed, false);
+  reaches_.Add({X_WG.q(), X_WG.p()}, 1.5 * options_.carry_speed, false);
 }
 
 void SimulatedPerson::StartReaches(Phase phase) noexcept {
   BeginPhase(phase);
-  reach_count_ = 0;
-  reach_index_ = 0;
-  reach_time_s_ = 0;
+  reaches_.Start({q_ref_, p_ref_}, task_.centre_W);
   waited_s_ = 0;
   calm_s_ = 0;
   swinging_s_ = 0;
 }
 
-void SimulatedPerson::AddReach(const Vec3& p_to, const Quat& q_to, double speed,
-                               bool is_arc) noexcept {
-  if (reach_count_ == kMaxReaches) {
-    return;
-  }
-  Reach& reach = reaches_[reach_count_];
-  const bool is_first = reach_count_ == 0;
-  reach.p_from = is_first ? p_ref_ : reaches_[reach_count_ - 1].p_to;
-  reach.q_from = is_first ? q_ref_ : reaches_[reach_count_ - 1].q_to;
-  reach.p_to = p_to;
-  reach.q_to = q_to;
-  reach.centre = task_.centre_W;
-  reach.is_arc = is_arc;
-  double length = (p_to - reach.p_from).norm();
-  if (is_arc) {
-    const Vec3 a = reach.p_from - reach.centre;
-    const Vec3 b = p_to - reach.centre;
-    length = std::atan2(a.cross(b).norm(), a.dot(b)) * std::max(a.norm(), b.norm());
-  }
-  reach.duration_s = std::max(kShortestReach, length / speed);
-  ++reach_count_;
-}
-
 bool SimulatedPerson::FollowReaches() noexcept {
-  if (reach_index_ >= reach_count_) {
+  if (reaches_.is_done()) {
     return true;
   }
   if ((p_ref_ - X_WH_.p()).norm() > kMostLag || IsTurning(kMostTurnLag)) {
     return false;  // waits for the hand, which a device may hold up
   }
-  const Reach& reach = reaches_[reach_index_];
-  reach_time_s_ += dt_;
-  const double s = MinimumJerk(std::min(1.0, reach_time_s_ / reach.duration_s));
-  q_ref_ = reach.q_from.slerp(s, reach.q_to);
-  if (reach.is_arc) {
-    const Vec3 a = reach.p_from - reach.centre;
-    const Vec3 b = reach.p_to - reach.centre;
-    const Vec3 turn = spatial::RotationVector(spatial::RotationTaking(a, b));
-    const double radius = (1 - s) * a.norm() + s * b.norm();
-    p_ref_ = reach.centre + radius * (spatial::RotationFromVector(s * turn) * a.normalized());
-  } else {
-    p_ref_ = reach.p_from + s * (reach.p_to - reach.p_from);
-  }
-  if (reach_time_s_ >= reach.duration_s) {
-    ++reach_index_;
-    reach_time_s_ = 0;
-  }
-  return reach_index_ >= reach_count_;
+  const bool is_done = reaches_.Follow(dt_);
+  p_ref_ = reaches_.X_WR().p();
+  q_ref_ = reaches_.X_WR().q();
+  return is_done;
 }
 
 bool SimulatedPerson::IsTurning(double lag) const noexcept {
@@ -165,30 +126,8 @@ bool SimulatedPerson::HasCome(const OperatorInput& input) noexcept {
   return swinging_s_ <= 0 || waited_s_ > kMostWait;
 }
 
-Vec3 SimulatedPerson::CalcLifted() const noexcept {
-  return task_.X_WG_start.p() + Vec3(0, 0, task_.lift_height);
-}
-
-Vec3 SimulatedPerson::CalcPointAside(double distance) const noexcept {
-  const Vec3 from_centre = CalcLifted() - task_.centre_W;
-  const double aside = std::hypot(from_centre.x(), from_centre.y());
-  if (from_centre.z() >= kLeastRiseAside * aside) {
-    return task_.centre_W + distance * from_centre.normalized();
-  }
-  // Straight up to it from the table never comes nearer to the centre than this.
-  const Vec3 out(from_centre.x() / aside, from_centre.y() / aside, kLeastRiseAside);
-  return task_.centre_W + distance * out;
-}
-
-spatial::Pose SimulatedPerson::WayAt(double travel) const noexcept {
-  return task_.way != nullptr ? task_.way->At(travel)
-                              : spatial::Pose(task_.X_WG_goal.q(),
-                                              task_.X_WG_goal.p() + travel * task_.extraction_W);
-}
-
 double SimulatedPerson::TravelOf(const spatial::Pose& X_WG) const noexcept {
-  return task_.way != nullptr ? task_.way->CalcTravel(X_WG, travel_)
-                              : (X_WG.p() - task_.X_WG_goal.p()).dot(task_.extraction_W);
+  return task_.TravelOf(X_WG, travel_);
 }
 
 double SimulatedPerson::SeenTravel(const OperatorInput& input) const noexcept {
@@ -196,11 +135,7 @@ double SimulatedPerson::SeenTravel(const OperatorInput& input) const noexcept {
 }
 
 Vec3 SimulatedPerson::OutwardOfWay() const noexcept {
-  if (task_.way == nullptr) {
-    return task_.extraction_W;
-  }
-  const Vec3 v_W = task_.way->RateAt(travel_).v;
-  return v_W.norm() > kLeastOfTravel ? Vec3(v_W.normalized()) : task_.extraction_W;
+  return task_.OutwardAt(travel_);
 }
 
 double SimulatedPerson::CalcOutwardSpeed(const OperatorInput& input) const noexcept {
@@ -209,22 +144,16 @@ double SimulatedPerson::CalcOutwardSpeed(const OperatorInput& input) const noexc
 }
 
 double SimulatedPerson::CalcWayToSphere() const noexcept {
-  const double length = task_.way != nullptr ? task_.way->length() : 0;
-  const Vec3 from_centre = WayAt(length).p() - task_.centre_W;
-  const double b = from_centre.dot(task_.extraction_W);
-  const double discriminant =
-      b * b - from_centre.squaredNorm() + task_.transfer_radius * task_.transfer_radius;
-  return std::max(task_.engage_distance + 2 * kStandOff,
-                  length - b + std::sqrt(std::max(0.0, discriminant)));
+  return task_.CalcWayToSphere(task_.engage_distance + 2 * kStandOff);
 }
 
 void SimulatedPerson::PlanCarry() noexcept {
   StartReaches(Phase::kCarry);
-  AddReach(CalcLifted(), task_.X_WG_start.q(), options_.carry_speed, false);
-  AddReach(CalcPointAside(task_.transfer_radius), task_.X_WG_start.q(), options_.carry_speed,
-           false);
-  const spatial::Pose X_WG = WayAt(CalcWayToSphere());
-  AddReach(X_WG.p(), X_WG.q(), options_.carry_speed, true);
+  reaches_.Add({task_.X_WG_start.q(), task_.CalcLifted()}, options_.carry_speed, false);
+  reaches_.Add({task_.X_WG_start.q(), task_.CalcPointAside(task_.transfer_radius)},
+               options_.carry_speed, false);
+  const spatial::Pose X_WG = task_.WayAt(CalcWayToSphere());
+  reaches_.Add({X_WG.q(), X_WG.p()}, options_.carry_speed, true);
 }
 
 void SimulatedPerson::PlanPutDown() noexcept {
@@ -232,10 +161,10 @@ void SimulatedPerson::PlanPutDown() noexcept {
   const double way = std::max(0.0, CalcWayToSphere() - TravelOf({q_ref_, p_ref_}));
   const Quat& q = task_.X_WG_start.q();
   StartReaches(Phase::kPutDown);
-  AddReach(p_ref_ + way * d, q_ref_, options_.carry_speed, false);
-  AddReach(CalcPointAside(task_.transfer_radius), q, options_.carry_speed, true);
-  AddReach(CalcLifted(), q, options_.carry_speed, false);
-  AddReach(task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap), q, options_.approach_speed, false);
+  reaches_.Add({q_ref_, p_ref_ + way * d}, options_.carry_speed, false);
+  reaches_.Add({q, task_.CalcPointAside(task_.transfer_radius)}, options_.carry_speed, true);
+  reaches_.Add({q, task_.CalcLifted()}, options_.carry_speed, false);
+  reaches_.Add({q, task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap)}, options_.approach_speed, false);
 }
 
 void SimulatedPerson::PlanReturn() noexcept {
@@ -244,11 +173,11 @@ void SimulatedPerson::PlanReturn() noexcept {
   const Quat q = q_ref_;
   gave_up_ = true;
   StartReaches(Phase::kGiveUp);
-  AddReach(p_ref_ + way * d, q, options_.carry_speed, false);
-  AddReach(CalcPointAside(way), q, options_.carry_speed, true);
-  AddReach(CalcLifted(), task_.X_WG_start.q(), options_.carry_speed, false);
-  AddReach(task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap), task_.X_WG_start.q(),
-           options_.approach_speed, false);
+  reaches_.Add({q, p_ref_ + way * d}, options_.carry_speed, false);
+  reaches_.Add({q, task_.CalcPointAside(way)}, options_.carry_speed, true);
+  reaches_.Add({task_.X_WG_start.q(), task_.CalcLifted()}, options_.carry_speed, false);
+  reaches_.Add({task_.X_WG_start.q(), task_.X_WG_start.p() + Vec3(0, 0, kPutDownGap)},
+               options_.approach_speed, false);
 }
 
 Vec3 SimulatedPerson::Tremor() noexcept {
@@ -303,12 +232,13 @@ void SimulatedPerson::BeginApproach(const OperatorInput& input) noexcept {
   hold_offset_W_ = is_at_device_ ? Vec3(grip_offset_W_.dot(d) * d - grip_offset_W_) : Vec3::Zero();
   travel_ = task_.engage_distance + kStandOff;
   StartReaches(Phase::kApproach);
-  AddReach(CalcApproachEnd(), spatial::RotationFromVector(aim_turn_) * WayAt(travel_).q(),
-           options_.approach_speed, false);
+  reaches_.Add(
+      {spatial::RotationFromVector(aim_turn_) * task_.WayAt(travel_).q(), CalcApproachEnd()},
+      options_.approach_speed, false);
 }
 
 Vec3 SimulatedPerson::CalcApproachEnd() const noexcept {
-  return WayAt(task_.engage_distance + kStandOff).p() + hold_offset_W_ + aim_offset_;
+  return task_.WayAt(task_.engage_distance + kStandOff).p() + hold_offset_W_ + aim_offset_;
 }
 
 void SimulatedPerson::CorrectHold(const OperatorInput& input) noexcept {
@@ -322,7 +252,7 @@ void SimulatedPerson::CorrectHold(const OperatorInput& input) noexcept {
   const bool is_seen = beside.norm() > kSeenBeside || hold_offset_W_ != Vec3::Zero();
   if (is_seen && beside.norm() < kSwings) {
     hold_offset_W_ -= dt_ / kCorrectTime * (hold_offset_W_ + beside);
-    reaches_[0].p_to = CalcApproachEnd();
+    reaches_.Redirect(CalcApproachEnd());
   }
 }
 
@@ -394,7 +324,7 @@ void SimulatedPerson::StepPhase(const OperatorInput& input) noexcept {
 }
 
 void SimulatedPerson::StepReach() noexcept {
-  if (FollowReaches() && phase_time_s_ > reaches_[0].duration_s + 0.3 &&
+  if (FollowReaches() && phase_time_s_ > reaches_.first_duration() + 0.3 &&
       (p_ref_ - X_WH_.p()).norm() < kAtHand && V_H_.v.norm() < kCalm && !IsTurning(kTurned)) {
     BeginPhase(Phase::kGrasp);
     is_gripping_ = true;

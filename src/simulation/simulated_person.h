@@ -2,62 +2,23 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 
 #include "base/random.h"
 #include "base/ring.h"
-#include "simulation/grip_way.h"
+#include "simulation/arm.h"
 #include "simulation/operator.h"
+#include "simulation/person_task.h"
+#include "simulation/reaches.h"
+#include "simulation/task_operator.h"
 
 namespace hvas::simulation {
-
-/** A person who carries a part around the product begins at least this high above its centre, by
- the distance from there: what comes from the side is then carried over the product, and not
- through the table. A choice. */
-inline constexpr double kLeastRiseAside = 0.3;
-
-/** What the person has been told about one part: where it lies, where it should go and which way
- in; or, for a part to be taken out, where it is, which way out and where to put it down. */
-struct PersonTask {
-  product::OccurrenceId occurrence;
-  spatial::Pose
-      X_WG_start;  ///< Grip frame, lying on the table: at the centre of mass, turned as the part.
-  spatial::Pose X_WG_goal;  ///< Grip frame of the part in its place.
-  /** The part is in its place: it is drawn out and put down at X_WG_start. */
-  bool takes_out{false};
-  /** The part is on its way already, within the product: it goes on along it from where it is, and
-   stays where it sticks. */
-  bool starts_on_way{false};
-  Vec3 p_BG{Vec3::Zero()};           ///< The grip in the part.
-  Vec3 extraction_W{Vec3::UnitZ()};  ///< Unit; the way out, that of the last piece of `way`.
-  double engage_distance{0};         ///< [m] from the goal, where insertion begins.
-  /** The way of the grip where it is not straight; outlives the task. Null: straight. */
-  const GripWay* way{nullptr};
-  bool is_threaded{
-      false};  ///< The way is that of its thread: it is turned along it, and no slot found.
-  /** It has play in its hole, and touches it there: it may stick in it tilted, and pressing harder
-   wedges it. */
-  bool has_play{false};
-  /** Only planes guide it: what they leave free the eye has to find. */
-  bool is_guided_by_planes{false};
-  /** [m] from the goal, where it stops, rests, draws the part out again and brings it back;
-   negative: it goes all the way in. */
-  double turn_back{-1};
-  Vec3 centre_W{Vec3::Zero()};  ///< The product's.
-  double transfer_radius{0};    ///< [m] at which it may be carried around the product.
-  double lift_height{0.05};     ///< [m] that clears the other parts on the table.
-};
 
 /** An arm and its habits. Values of the arm are of the order published for hands that hold a haptic
  device or keep a posture: Dolan, Friedman and Nagurka, IEEE Trans. SMC 23(3), 1993; Tsuji et al.,
  Biological Cybernetics 72, 1995; Fu and Cavusoglu, IEEE Trans. SMC B 42(6), 2012. Where each value
  comes from, and which are choices: docs/algorithms/simulated_person.md. */
-struct PersonOptions {
-  double mass{0.8};               ///< Effective mass at the hand [kg].
-  double stiffness{400};          ///< [N/m]
-  double damping{25};             ///< [N s/m]
-  double inertia{3e-3};           ///< Inertia of the hand's turning [kg m^2].
-  double turn_stiffness{6};       ///< [N m/rad]
-  double turn_damping{0.2};       ///< [N m s/rad]
+struct PersonOptions : Arm {
   double carry_speed{0.45};       ///< Mean speed of a reach [m/s].
   double approach_speed{0.15};    ///< Towards the place [m/s].
   double insert_speed{0.04};      ///< [m/s]
@@ -91,16 +52,6 @@ enum class PersonKind : std::uint8_t {
 /** Habits for a way to work, from those of a careful person. */
 [[nodiscard]] PersonOptions MakeHabits(PersonKind kind, PersonOptions careful) noexcept;
 
-/** Where a person wants the hand to be, and what else it does; the hand is drawn there by the arm's
- impedance. */
-struct HandReference {
-  spatial::Pose X_WR;
-  Vec3 v_R_W{Vec3::Zero()};  ///< [m/s]
-  Vec3 f_W{Vec3::Zero()};    ///< Besides, to hold up what it carries [N].
-  bool is_gripping{false};
-  std::int64_t client_age_ns{0};  ///< Grip, as in device::DeviceState.
-};
-
 /** Somebody whose hand holds a device, whose mechanics move it. */
 class DeviceHolder {
  public:
@@ -127,20 +78,21 @@ class DeviceHolder {
  Neuroscience 5(7), 1985), feels the device's force, presses harder when stuck, searches when it
  misses, and gives up after a time. Seeded. It knows where the part should go and what the hand
  feels and hears. RT-safe. */
-class SimulatedPerson final : public Operator, public DeviceHolder {
+class SimulatedPerson final : public TaskOperator, public DeviceHolder {
  public:
   SimulatedPerson(const PersonOptions& options, std::uint64_t seed, const spatial::Pose& X_WH);
 
-  /** Gives the person a part to do; it is begun when the last one is done. One other thread may
-   call this while Step runs. False when too many wait already. */
-  bool Assign(const PersonTask& task) noexcept { return tasks_.TryPush(task); }
+  bool Assign(const PersonTask& task) noexcept override { return tasks_.TryPush(task); }
 
-  /** Parts that were begun and let go again, in their place or not. Any thread. */
-  [[nodiscard]] int finished_count() const noexcept {
+  [[nodiscard]] int finished_count() const noexcept override {
     return finished_count_.load(std::memory_order_acquire);
   }
 
-  [[nodiscard]] bool gave_up() const noexcept { return gave_up_; }
+  [[nodiscard]] bool gave_up() const noexcept override { return gave_up_; }
+
+  [[nodiscard]] int most_tries() const override { return kMostTries; }
+
+  [[nodiscard]] std::string DescribeEffort() const override;
 
   [[nodiscard]] int searches() const noexcept { return search_count_; }
 
@@ -151,6 +103,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   [[nodiscard]] const PersonOptions& options() const noexcept override { return options_; }
 
  private:
+  static constexpr int kMostTries = 3;  ///< One, and two more: a choice.
+
   enum class Phase {
     kDone,
     kReach,     ///< Empty hand to the part.
@@ -166,18 +120,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
     kGiveUp,   ///< Brings the part back to the table.
   };
 
-  /** One straight or circular reach, minimum jerk in time. */
-  struct Reach {
-    Vec3 p_from{Vec3::Zero()}, p_to{Vec3::Zero()};
-    Quat q_from{Quat::Identity()}, q_to{Quat::Identity()};
-    Vec3 centre{Vec3::Zero()};
-    bool is_arc{false};  ///< Great circle about the centre with interpolated radius.
-    double duration_s{0};
-  };
-
   void Begin(const PersonTask& task) noexcept;
   void StartReaches(Phase phase) noexcept;
-  void AddReach(const Vec3& p_to, const Quat& q_to, double speed, bool is_arc) noexcept;
   /** Advances the reference along the reaches; true when all are done. */
   bool FollowReaches() noexcept;
   /** Whether a device's hand is still on its way round, with more than `lag` to go [rad]. */
@@ -188,14 +132,8 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   void PlanCarry() noexcept;
   void PlanPutDown() noexcept;
   void PlanReturn() noexcept;
-  /** Where the part is clear of the others on the table. */
-  [[nodiscard]] Vec3 CalcLifted() const noexcept;
-  /** Point over the table at which nothing is met, at this distance from the product's centre. */
-  [[nodiscard]] Vec3 CalcPointAside(double distance) const noexcept;
-  /** Distance from the goal at which the way in crosses the sphere on which nothing is met [m]. */
+  /** Distance from the goal at which it begins to go in along the way [m]. */
   [[nodiscard]] double CalcWayToSphere() const noexcept;
-  /** Where the way has the grip, so far from the goal. */
-  [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
   /** How far from the goal along the way a grip is [m]. */
   [[nodiscard]] double TravelOf(const spatial::Pose& X_WG) const noexcept;
   /** Where the hand means to be beside the way: what it aims, searches, yields and corrects. */
@@ -342,11 +280,7 @@ class SimulatedPerson final : public Operator, public DeviceHolder {
   Vec3 seen_error_{Vec3::Zero()};       ///< Error of the last close look [m].
   Vec3 seen_turn_error_{Vec3::Zero()};  ///< Likewise [rad].
 
-  static constexpr int kMaxReaches = 6;  ///< The longest plan has four.
-  Reach reaches_[kMaxReaches];
-  int reach_count_{0};
-  int reach_index_{0};
-  double reach_time_s_{0};
+  Reaches reaches_;
   double phase_time_s_{0};
   double waited_s_{0};    ///< Goal of the hand at the end of the reaches.
   double calm_s_{0};      ///< Part of that time without motion.

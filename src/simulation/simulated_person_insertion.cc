@@ -208,7 +208,7 @@ void SimulatedPerson::StepInsert(const OperatorInput& input) noexcept {
   } else {
     PressOn(input, insertion);
   }
-  const spatial::Pose X_WG = WayAt(travel_);
+  const spatial::Pose X_WG = task_.WayAt(travel_);
   p_ref_ = X_WG.p() + OffsetBesideWay();
   q_ref_ = HasSlackWrist() ? X_WH_.q() : TurnBesideWay() * X_WG.q();
 }
@@ -290,7 +290,7 @@ void SimulatedPerson::StepWithdraw(const OperatorInput& input) noexcept {
   AdjustPush(input.F_H_D.f.norm(), speed, options_.insert_speed, false);
   travel_ = std::min(travel_ + options_.insert_speed * dt_, hand_travel + LeadOf(input));
   if (task_.way != nullptr) {
-    const spatial::Pose X_WG = WayAt(travel_);
+    const spatial::Pose X_WG = task_.WayAt(travel_);
     p_ref_ = X_WG.p();
     q_ref_ = X_WG.q();
     return;
@@ -350,7 +350,7 @@ bool SimulatedPerson::HasSlotToFind() const noexcept {
 
 void SimulatedPerson::FollowWayByEye(const OperatorInput& input, const Vec3& d) noexcept {
   const double travel = SeenTravel(input);
-  const spatial::Pose X_WG = WayAt(travel);
+  const spatial::Pose X_WG = task_.WayAt(travel);
   Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() + seen_error_ - yield_offset_;
   Vec3 turned = spatial::RotationBetween(X_WG.q(), input.X_WD.q()) + seen_turn_error_ - rocking_ -
                 yield_turn_;
@@ -397,7 +397,7 @@ void SimulatedPerson::LookClosely(const OperatorInput& input) noexcept {
   // Where nothing is engaged yet the part is where the hand wants it, but for what it errs by.
   const bool is_free = IsLedByEye() && seen_travel > task_.engage_distance;
   const spatial::Pose X_WG =
-      task_.way == nullptr ? task_.X_WG_goal : WayAt(is_free ? travel_ : seen_travel);
+      task_.way == nullptr ? task_.X_WG_goal : task_.WayAt(is_free ? travel_ : seen_travel);
   Vec3 aside = input.X_WD * task_.p_BG - X_WG.p() - search_offset_;
   // How far it is on its way, and how it hangs at the hand, it feels.
   aside -= (is_free ? grip_offset_W_ : aside).dot(d) * d;

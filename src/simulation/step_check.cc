@@ -32,6 +32,7 @@ class StepCheck {
     }
     switch (step.kind) {
       case SequenceStep::Kind::kBase:
+      case SequenceStep::Kind::kAssume:
         return step.members.empty() && Move(step, State::kLoose, State::kPlaced);
       case SequenceStep::Kind::kInsert:
         return Move(step, step.members.empty() ? State::kLoose : State::kParked, State::kPlaced);

@@ -41,8 +41,8 @@ std::vector<haptics::TickOptions> TicksOf(const std::vector<std::unique_ptr<Live
   return ticks;
 }
 
-simulation::Persons PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
-  simulation::Persons persons{};
+simulation::TaskOperators PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  simulation::TaskOperators persons{};
   for (std::size_t i = 0; i < hands.size(); ++i) {
     persons[i] = hands[i]->person();
   }

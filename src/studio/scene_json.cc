@@ -39,6 +39,8 @@ const char* NameOf(SequenceStep::Kind kind) {
       return "aside";
     case SequenceStep::Kind::kReturn:
       return "return";
+    case SequenceStep::Kind::kAssume:
+      return "assume";
   }
   return "insert";
 }

@@ -32,6 +32,13 @@ std::size_t CountUntouched(const RunOutcome& outcome) {
                     [](const PartResult& part) { return part.is_seated && !part.has_touched; }));
 }
 
+/** Counts the parts that nothing brought to their place, and that were put there for the others. */
+std::size_t CountAssumed(const RunOutcome& outcome) {
+  return static_cast<std::size_t>(
+      std::count_if(outcome.parts.begin(), outcome.parts.end(),
+                    [](const PartResult& part) { return part.is_assumed; }));
+}
+
 /** Counts the parts in their place that had no way there but by an allowance. */
 std::size_t CountByAllowance(const RunOutcome& outcome) {
   return static_cast<std::size_t>(std::count_if(
@@ -64,7 +71,8 @@ nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance
 nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
   nlohmann::ordered_json json{{"id", part.occurrence.value()},
                               {"name", PathOf(model, part.occurrence)},
-                              {"seated", part.is_seated}};
+                              {"seated", part.is_seated},
+                              {"is_assumed", part.is_assumed}};
   json.update(MakeHoldJson(part));
   const simulation::Passage& passage = part.passage;
   json.update(
@@ -117,7 +125,8 @@ void PrintParts(const Model& model, const RunOutcome& outcome) {
     const std::string number = fmt::format("{:>3}", i + 1);
     const std::string name = PathOf(model, part.occurrence);
     if (!part.is_seated) {
-      table.Add({number, name}, "NOT IN PLACE: " + part.reason);
+      table.Add({number, name},
+                (part.is_assumed ? "ASSUMED IN PLACE: " : "NOT IN PLACE: ") + part.reason);
       continue;
     }
     table.Add({number, name, fmt::format("{:.2f}", part.time), fmt::format("{:.3f}", part.path),
@@ -140,6 +149,8 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report, const Le
   nlohmann::ordered_json json = MakeRunJson(model, report);
   json["seated"] = CountSeated(outcome);
   json["by_allowance"] = CountByAllowance(outcome);
+  json["assumed"] = CountAssumed(outcome);
+  json["not_tried"] = outcome.parts.size() - CountSeated(outcome) - CountAssumed(outcome);
   json["untouched"] = CountUntouched(outcome);
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
@@ -159,6 +170,8 @@ void PrintAssemblyTable(const Model& model, const SessionReport& report) {
   std::string apart = allowed > 0 ? fmt::format(", {} of them only by an allowance", allowed) : "";
   apart +=
       untouched > 0 ? fmt::format(", {} of them touching no part that was there", untouched) : "";
+  const std::size_t assumed = CountAssumed(outcome);
+  apart += assumed > 0 ? fmt::format("; {} assumed there, for the parts after them", assumed) : "";
   PrintRun(
       model, report,
       fmt::format("{} of {} parts in place{}", CountSeated(outcome), outcome.parts.size(), apart));

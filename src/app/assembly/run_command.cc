@@ -240,10 +240,15 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
                           simulation::PersonKind::kStiff}) {
     persons.emplace_back(simulation::ToString(kind), kind);
   }
+  AddChoice(command, "--operator", &options->run.person,
+            Choices<std::optional<simulation::PersonKind>>{
+                {"guided", std::nullopt}, {"person", simulation::PersonKind::kCareful}},
+            "What moves the parts without a device: a guided hand, which follows the planned ways, "
+            "so that the result hangs on the product alone; or a simulated person, who aims, feels "
+            "and searches; default: guided");
   AddChoice(command, "--person", &options->run.person, persons,
-            "How a simulated person without a device works: careful; hasty, three times as fast "
-            "and with all its "
-            "force at once; or stiff; both give way to nothing");
+            "How a simulated person works, who then moves the parts: careful; hasty, three times "
+            "as fast and with all its force at once; or stiff; both give way to nothing");
   command->add_option(
       "--device", options->device,
       "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "

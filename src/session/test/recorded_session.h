@@ -34,7 +34,8 @@ struct Stretch {
                                     model, std::vector{options, options})),
         first({}, 1, simulation::StartOfHand(*model)),
         second({}, 2, simulation::StartOfHand(*model)),
-        run(simulation.get(), simulation::Persons{&first, hands == 2 ? &second : nullptr}, sink) {}
+        run(simulation.get(), simulation::TaskOperators{&first, hands == 2 ? &second : nullptr},
+            sink) {}
 
   [[nodiscard]] simulation::Execution MakeExecution(double limit_s) {
     return run.MakeExecution({&first, simulation->hand_count() == 2 ? &second : nullptr}, limit_s);

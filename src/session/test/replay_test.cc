@@ -95,7 +95,7 @@ std::vector<simulation::PartState> RecordTableSubassembly(const std::filesystem:
   simulation::Simulation simulation(model, haptics::TickOptions());
   simulation.physics().AllowJoining(0);
   sink.Begin(&simulation);
-  simulation::AssemblyRun run(&simulation, simulation::Persons{}, &sink);
+  simulation::AssemblyRun run(&simulation, simulation::TaskOperators{}, &sink);
   constexpr std::size_t kCarrier = 1;
   constexpr std::size_t kPeg = 2;
   const auto& carrier = model->bodies[kCarrier];

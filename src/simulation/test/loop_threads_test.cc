@@ -79,7 +79,7 @@ TEST(LoopThreadsTest, X3TwoHandsShareASession) {  // X4; meant for the thread sa
   SimulatedPerson left({}, 1, StartOfHand(*model));
   SimulatedPerson right({}, 2, StartOfHand(*model));
   TicksOfHands hands;
-  AssemblyRun run(&simulation, Persons{&left, &right}, &hands);
+  AssemblyRun run(&simulation, TaskOperators{&left, &right}, &hands);
   FlightRecorder flight(1000, 2);
   std::size_t hands_in_frame = 0;
   Execution execution = run.MakeExecution({&left, &right}, 2);

@@ -30,7 +30,7 @@ class X1TableSubassemblyTest : public ::testing::Test {
   X1TableSubassemblyTest()
       : model_(*PegInCarrierInCupModel()),
         simulation_(PegInCarrierInCupModel(), haptics::TickOptions()),
-        run_(&simulation_, Persons{}, &watch_) {
+        run_(&simulation_, TaskOperators{}, &watch_) {
     simulation_.physics().AllowJoining(0);
     simulation_.physics().AllowTakingOut(0);
     run_.Advance();
@@ -137,7 +137,7 @@ TEST_F(X1TableSubassemblyTest, X1PartsPutTogetherOnTheTableAreOneBody) {
 
 TEST_F(X1TableSubassemblyTest, X1WithoutLeaveToJoinAPegOnTheCarrierIsByItself) {
   Simulation other(PegInCarrierInCupModel(), haptics::TickOptions());
-  AssemblyRun run(&other, Persons{}, nullptr);
+  AssemblyRun run(&other, TaskOperators{}, nullptr);
   run.Advance();
   const Vec3 p_goal = CalcPegGoal();
   WaypointHand hand(CarryOver(CentreOf(kCarriedPeg), p_goal, p_goal.z() + 60e-3));
@@ -229,7 +229,7 @@ TEST_F(X1TableSubassemblyTest, X1SubassemblyIsThereAfterRestoringTheParts) {
   const std::vector<PartState> parts = physics().parts();
   Simulation again(PegInCarrierInCupModel(), haptics::TickOptions());
   again.Restore(parts);
-  AssemblyRun run(&again, Persons{}, nullptr);
+  AssemblyRun run(&again, TaskOperators{}, nullptr);
   run.Resume(1);
   const Vec3 p_from = CentreOfBoth();
   WaypointHand hand(CarryOver(p_from, p_from + Vec3(-0.12, 0, 0.02), p_from.z() + 60e-3));

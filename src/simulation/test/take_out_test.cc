@@ -82,7 +82,7 @@ class TakeOutTest : public ::testing::Test {
 };
 
 TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
-  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  AssemblyRun hands(&session_.simulation, TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(0, 0, 60e-3), &hands);
@@ -99,7 +99,7 @@ TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
 }
 
 TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
-  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  AssemblyRun hands(&session_.simulation, TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);  // nobody has said that it may
@@ -112,7 +112,7 @@ TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
 }
 
 TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
-  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  AssemblyRun hands(&session_.simulation, TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(0, 0, 1e-3), &hands);
@@ -121,7 +121,7 @@ TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
 }
 
 TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
-  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  AssemblyRun hands(&session_.simulation, TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(40e-3, 0, 0), &hands);
@@ -130,7 +130,7 @@ TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
 }
 
 TEST_F(TakeOutTest, PersonPutsItInAgain) {
-  AssemblyRun hands(&session_.simulation, Persons{}, &watch_);
+  AssemblyRun hands(&session_.simulation, TaskOperators{}, &watch_);
   hands.Advance();
   Pull(Vec3(0, 30e-3, 60e-3), &hands);
   ASSERT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)), Placement::kLoose);

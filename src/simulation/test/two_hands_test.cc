@@ -446,7 +446,7 @@ struct Pair {
       : simulation(model, std::vector<haptics::TickOptions>(2)),
         left({}, 1, StartOfHand(*model)),
         right({}, 2, StartOfHand(*model)),
-        run(&simulation, Persons{&left, &right}, &hands) {
+        run(&simulation, TaskOperators{&left, &right}, &hands) {
     (void)RunLockstep(run.MakeExecution({&left, &right}, 60));
     EXPECT_TRUE(run.is_done());
     for (const PartResult& part : run.results()) {
@@ -483,7 +483,7 @@ TEST(TwoPersonsTest, WhatAnotherHandHasPutInItsPlaceIsDone) {
   SimulatedPerson by_itself({}, 1, StartOfHand(*model));  // its tasks do not come from the run
   SimulatedPerson partner({}, 2, StartOfHand(*model));
   Assign(simulation, kSecond, &by_itself);
-  AssemblyRun run(&simulation, Persons{nullptr, &partner}, nullptr);
+  AssemblyRun run(&simulation, TaskOperators{nullptr, &partner}, nullptr);
   Execution execution = run.MakeExecution({&by_itself, &partner}, 60);
   execution.advance = [&] {
     if (by_itself.finished_count() > 0) {
