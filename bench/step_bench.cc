@@ -83,7 +83,7 @@ Figure RunOurs(const product::Product& product, double seconds) {
   options.X_WB_start = led(0);
   options.contact_in_holes = true;
   const auto run = assembly::SteppedRun::Create(model, options).value();
-  simulation::HandReference hand;
+  person::HandReference hand;
   hand.is_gripping = true;
   Figure figure;
   const double start = CpuSeconds();

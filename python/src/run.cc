@@ -41,14 +41,14 @@ struct ModelHandle {
   std::vector<Diagnostic> diagnostics;
 };
 
-py::object Describe(const simulation::SequenceStep& step, const Model& model, std::size_t index) {
+py::object Describe(const sequence::SequenceStep& step, const Model& model, std::size_t index) {
   static constexpr const char* kNames[] = {"base", "insert", "park", "remove", "aside", "return"};
   py::list members;
   for (const product::OccurrenceId id : step.members) {
     members.append(id.index());
   }
   const spatial::Pose goal =
-      simulation::GoalOf(step, model.bodies[step.occurrence.index()].X_WB_goal);
+      sequence::GoalOf(step, model.bodies[step.occurrence.index()].X_WB_goal);
   return MakeDataclass(
       "Step",
       py::dict(py::arg("index") = index,
@@ -70,7 +70,7 @@ py::list ListSteps(const ModelHandle& handle) {
 
 py::dict ListGaps(const ModelHandle& handle) {
   py::dict gaps;
-  for (const simulation::SequenceGap& gap : handle.model->sequence.gaps) {
+  for (const sequence::SequenceGap& gap : handle.model->sequence.gaps) {
     gaps[py::str(PathOf(*handle.model, gap.occurrence))] = gap.reason;
   }
   return gaps;
@@ -167,7 +167,7 @@ py::list Plan(const ModelHandle& handle, const py::object& orders,
   }();
   const assembly::OrderPlan plan = Take(std::move(found));
   py::list list;
-  for (const simulation::FoundOrder& order : plan.search.orders) {
+  for (const orders::FoundOrder& order : plan.search.orders) {
     py::list parts;
     for (const std::size_t move : order.moves) {
       parts.append(PathOf(*handle.model, plan.rules.moves[move].parts.front()));
@@ -306,7 +306,7 @@ class PythonRun {
                         const py::object& ticks_object, bool grip) {
     auto& run = self.cast<PythonRun&>();
     const auto ticks = static_cast<std::size_t>(ToInteger("ticks", ticks_object, 1, kMostTicks));
-    simulation::HandReference reference = run.reference_;
+    person::HandReference reference = run.reference_;
     if (!pose.is_none()) {  // Of the part; the hand keeps its grip.
       reference.X_WR = ToPose("pose", pose) * run.run_->X_HB().Inverse();
     }
@@ -362,7 +362,7 @@ class PythonRun {
 
   ModelPtr model_;
   std::unique_ptr<SteppedRun> run_;
-  simulation::HandReference reference_;
+  person::HandReference reference_;
   std::span<const TickRow> rows_;
 };
 
@@ -398,7 +398,7 @@ void DefineModel(py::module_* module) {
 }
 
 void DefineStep(py::class_<PythonRun>* run) {
-  const simulation::PersonOptions arm;
+  const person::PersonOptions arm;
   using Object = const py::object&;
   run->def(py::init<const ModelHandle&, Object, Object, const std::string&, bool, bool, Object,
                     Object, Object, Object, Object>(),

@@ -35,7 +35,7 @@ class RunSetup {
 
  protected:
   /** The simulated persons, by hand. */
-  [[nodiscard]] simulation::Persons ListPersons() const;
+  [[nodiscard]] simulation::TaskOperators ListMovers() const;
 
  private:
   std::vector<Hand> hands_;

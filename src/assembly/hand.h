@@ -9,10 +9,10 @@
 #include "base/result.h"
 #include "device/opened_device.h"
 #include "haptics/options.h"
+#include "person/simulated_person.h"
 #include "simulation/device_session.h"
 #include "simulation/model.h"
 #include "simulation/operator.h"
-#include "simulation/simulated_person.h"
 
 namespace hvas::assembly {
 
@@ -22,8 +22,8 @@ struct Hand {
   std::string address;          ///< Address of the device, as requested; empty: none.
   device::OpenedDevice opened;  ///< Empty without a device.
   haptics::TickOptions tick;
-  std::unique_ptr<simulation::SimulatedPerson> person;  ///< Null where the user of a device has it.
-  std::unique_ptr<simulation::Operator> at_device;      ///< Null without a device.
+  std::unique_ptr<person::SimulatedPerson> person;  ///< Null where the user of a device has it.
+  std::unique_ptr<simulation::Operator> at_device;  ///< Null without a device.
 
   /** Operator of this hand; never null in a hand that one of the functions below has made. */
   [[nodiscard]] simulation::Operator* active() const {
@@ -38,7 +38,7 @@ struct Hand {
 /** Makes the hand of a simulated person without a device. The same habits and seed give the same
  hand. */
 [[nodiscard]] Hand MakePersonHand(const simulation::Model& model, const haptics::TickOptions& tick,
-                                  const simulation::PersonOptions& habits, std::uint64_t seed);
+                                  const person::PersonOptions& habits, std::uint64_t seed);
 
 /** Makes a hand that holds a device. A simulated person with this seed holds an emulated one, the
  user a real one.
@@ -54,7 +54,7 @@ struct HandOptions {
   simulation::RenderOptions render;
   std::uint64_t seed{1};  ///< Seed of the simulated person.
   bool is_live{false};    ///< Runs in real time; no real device works without it.
-  simulation::PersonKind person{simulation::PersonKind::kCareful};
+  person::PersonKind person{person::PersonKind::kCareful};
 };
 
 /** Opens the device, where one is asked for, and makes the hand that holds it, else the hand of a

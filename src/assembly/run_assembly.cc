@@ -17,9 +17,9 @@ using simulation::PartResult;
 /** Explains why a part is not in its place after a run that was stopped before its turn ended. */
 std::string ExplainMissing(const Model& model, product::OccurrenceId id) {
   const auto& gaps = model.sequence.gaps;
-  const auto gap =
-      std::find_if(gaps.begin(), gaps.end(),
-                   [id](const simulation::SequenceGap& item) { return item.occurrence == id; });
+  const auto gap = std::find_if(gaps.begin(), gaps.end(), [id](const sequence::SequenceGap& item) {
+    return item.occurrence == id;
+  });
   return gap != gaps.end() ? gap->reason : "the run was stopped before its turn ended";
 }
 

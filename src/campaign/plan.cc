@@ -233,7 +233,7 @@ class PlanReader {
                           fmt::format("write one or more of: {}", fmt::join(kPersons, ", ")));
         return;
       }
-      plan_->persons.push_back(static_cast<simulation::PersonKind>(found - kPersons.begin()));
+      plan_->persons.push_back(static_cast<person::PersonKind>(found - kPersons.begin()));
     }
     const bool has_choice = plan_->method == Method::kAssemble;
     if (words.empty() || words.size() > kPersons.size() || (!has_choice && words.size() > 1)) {
@@ -337,7 +337,7 @@ std::string DescribeCell(const Plan& plan, const Cell& cell) {
     words.push_back(plan.materials[cell.material].id);
   }
   if (plan.persons.size() > 1) {
-    words.emplace_back(simulation::ToString(plan.persons[cell.person]));
+    words.emplace_back(person::ToString(plan.persons[cell.person]));
   }
   return words.empty() ? "all" : fmt::format("{}", fmt::join(words, " / "));
 }

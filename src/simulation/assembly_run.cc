@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "simulation/extraction.h"
+#include "sequence/extraction.h"
 #include "simulation/table_subassembly.h"
 
 namespace hvas::simulation {
@@ -24,20 +24,20 @@ bool IsConnectedWithBase(const Model& model, OccurrenceId id) {
   for (const Body& body : model.bodies) {
     all.push_back(body.occurrence);
   }
-  const auto connected = ListConnected(id, all, model.sequence.neighbours);
-  const OccurrenceId base = FindBase(model.sequence);
+  const auto connected = sequence::ListConnected(id, all, model.sequence.neighbours);
+  const OccurrenceId base = sequence::FindBase(model.sequence);
   return std::any_of(connected.begin(), connected.end(), [&](OccurrenceId other) {
     return other == base || model.bodies[other.index()].role == BodyRole::kFixture;
   });
 }
 
-bool IsSinglePart(const SequenceStep& step) {
-  return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+bool IsSinglePart(const sequence::SequenceStep& step) {
+  return step.kind == sequence::SequenceStep::Kind::kInsert && step.members.empty();
 }
 
 }  // namespace
 
-AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
+AssemblyRun::AssemblyRun(Simulation* simulation, const TaskOperators& persons, Sink* downstream)
     : PartRun(simulation, downstream), passages_(simulation->model()) {
   for (std::size_t hand = 0; hand < persons.size(); ++hand) {
     if (persons[hand] != nullptr) {
@@ -80,8 +80,9 @@ const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const
   return dropped_[leader.is_valid() ? leader.index() : id.index()];
 }
 
-std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
-  const SimulatedPerson* person = worker.person;
+std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step,
+                                        const Worker& worker) const {
+  const TaskOperator* person = worker.person;
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
   if (!dropped && person == nullptr) {
     return "was not taken up";
@@ -96,25 +97,24 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
                                                                 units::ToMm(metrics.insertion))
                                                   : std::string();
-  const std::string tries = person != nullptr
-                                ? fmt::format("gave up after {} searches", person->searches())
-                                : std::string("was let go elsewhere");
+  const std::string tries = person != nullptr ? person->DescribeEffort() : "was let go elsewhere";
   const char* crossed = metrics.is_thread_crossed ? ", with its thread crossed" : "";
   return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
 }
 
-std::size_t AssemblyRun::IndexOf(const SequenceStep& step) const {
+std::size_t AssemblyRun::IndexOf(const sequence::SequenceStep& step) const {
   return static_cast<std::size_t>(&step - model().sequence.steps.data());
 }
 
-std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& worker,
+std::string AssemblyRun::FinishTurn(const sequence::SequenceStep& step, const Worker& worker,
                                     bool was_seated) {
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = true;
   turn.is_seated = was_seated;
   turn.neighbours_in_place = CountNeighboursInPlace(step);
   if (was_seated) {
-    const bool is_unit = !step.members.empty() && step.kind == SequenceStep::Kind::kInsert;
+    const bool is_unit =
+        !step.members.empty() && step.kind == sequence::SequenceStep::Kind::kInsert;
     const std::size_t leader = step.occurrence.index();
     has_touched_[leader] = is_unit ? turn.neighbours_in_place > 0 : has_touched_[leader];
     return {};
@@ -153,7 +153,7 @@ std::string AssemblyRun::ExplainPassage(const PartResult& result) const {
 }
 
 std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
-  const SequenceStep* aside = FindAside(model().sequence, id);
+  const sequence::SequenceStep* aside = sequence::FindAside(model().sequence, id);
   if (aside == nullptr || physics().placement(id) != Placement::kPlaced) {
     return {};
   }
@@ -173,7 +173,7 @@ std::string AssemblyRun::MakeNote(const PartResult& result) const {
   return note;
 }
 
-void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
+void AssemblyRun::FinishStep(const sequence::SequenceStep& step, const Worker& worker) {
   const Model& model = this->model();
   PartResult& result = ResultOf(step.occurrence);
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
@@ -181,7 +181,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   AddHold(step.occurrence);
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  if (step.kind != SequenceStep::Kind::kAside) {
+  if (step.kind != sequence::SequenceStep::Kind::kAside) {
     result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
     result.presses = was_seated ? ListPresses(step) : std::vector<PressedPair>();
   }
@@ -215,7 +215,7 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
   const OccurrenceId id = worker.step->occurrence;
-  if (IsWithinProduct(worker.step->kind)) {
+  if (sequence::IsWithinProduct(worker.step->kind)) {
     return IsInVain(*worker.step);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
@@ -223,25 +223,25 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
          (IsSinglePart(*worker.step) && physics().placement(id) == Placement::kPlaced);
 }
 
-bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
+bool AssemblyRun::IsDoneByAnother(const sequence::SequenceStep& step, const Worker& worker) const {
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
   return worker.person != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
          dropped->hand != worker.hand;
 }
 
-bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
+bool AssemblyRun::IsInPlaceAlready(const sequence::SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
          physics().placement(step.occurrence) == Placement::kPlaced;
 }
 
-bool AssemblyRun::IsInVain(const SequenceStep& step) const {
+bool AssemblyRun::IsInVain(const sequence::SequenceStep& step) const {
   // The order has the part that passes after each one that goes aside.
   return HasNothingToMove(step) ||
-         (step.kind == SequenceStep::Kind::kAside &&
+         (step.kind == sequence::SequenceStep::Kind::kAside &&
           physics().placement((&step + 1)->occurrence) == Placement::kPlaced);
 }
 
-spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
+spatial::Box AssemblyRun::WayIn(const sequence::SequenceStep& step) const {
   constexpr double kRoom = 5e-3;  // [m] to each side, for searching and for error
   const Body& body = model().bodies[step.occurrence.index()];
   const spatial::Box place = spatial::Transform(body.X_WB_goal, body.shape->box_B());
@@ -254,13 +254,13 @@ spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
   return box.Expanded(kRoom);
 }
 
-bool AssemblyRun::CanGoOnBeside(const SequenceStep& step, const Worker& busy) const {
+bool AssemblyRun::CanGoOnBeside(const sequence::SequenceStep& step, const Worker& busy) const {
   const bool is_past_carrying = states_[busy.hand] >= haptics::HoldState::kCaptured;
   return is_past_carrying && IsSinglePart(step) && IsSinglePart(*busy.step) &&
          !WayIn(step).Overlaps(WayIn(*busy.step));
 }
 
-AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
+AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const sequence::SequenceStep& step) {
   Worker* free = nullptr;
   for (std::size_t i = 1; i <= workers_.size(); ++i) {
     Worker& worker = workers_[(last_worker_ + i) % workers_.size()];
@@ -273,11 +273,11 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
   return free;
 }
 
-SequenceStep AssemblyRun::PlanAgain(const SequenceStep& step) const {
+sequence::SequenceStep AssemblyRun::PlanAgain(const sequence::SequenceStep& step) const {
   contact::Scene scene;
-  const SequenceInput input = MakeSequenceInput(model(), &scene);
-  Extraction extraction(input, &model().sequence);
-  Unit moved{step.occurrence};
+  const sequence::SequenceInput input = MakeSequenceInput(model(), &scene);
+  sequence::Extraction extraction(input, &model().sequence);
+  sequence::Unit moved{step.occurrence};
   moved.insert(moved.end(), step.members.begin(), step.members.end());
   for (const Body& body : model().bodies) {
     scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
@@ -288,16 +288,17 @@ SequenceStep AssemblyRun::PlanAgain(const SequenceStep& step) const {
   return extraction.TryRemove(moved).value_or(step);
 }
 
-bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
+bool AssemblyRun::Begin(const sequence::SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
-  SequenceStep possible = step;
+  sequence::SequenceStep possible = step;
   std::erase_if(possible.members,
                 [this](OccurrenceId id) { return physics().placement(id) == Placement::kLoose; });
   if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
     possible = MakeTableStep(model(), physics().parts(), step.occurrence, TakeExtent::kWhole);
   }
   const bool is_repeated = turns_[IndexOf(step)].is_finished;
-  if (worker->person != nullptr && is_repeated && step.kind == SequenceStep::Kind::kInsert) {
+  if (worker->person != nullptr && is_repeated &&
+      step.kind == sequence::SequenceStep::Kind::kInsert) {
     possible = PlanAgain(possible);
   }
   for (std::size_t hand = 0; hand < hand_count(); ++hand) {
@@ -331,7 +332,7 @@ std::size_t AssemblyRun::next_step() const {
 }
 
 void AssemblyRun::FinishAll() {
-  for (const SequenceGap& gap : model().sequence.gaps) {
+  for (const sequence::SequenceGap& gap : model().sequence.gaps) {
     ResultOf(gap.occurrence).reason = gap.reason;
   }
   for (const Body& body : model().bodies) {
@@ -348,19 +349,19 @@ bool AssemblyRun::HasFreePerson() const {
   });
 }
 
-const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
+const sequence::SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
   const auto& steps = model().sequence.steps;
   const std::size_t end = std::min({next_step_, end_step_, steps.size()});
   // What goes into a subassembly that is on its shelf has to wait until this is in its place.
   std::size_t begin = first_step_;
   for (std::size_t i = begin; i < end && !is_at_end; ++i) {
-    begin = steps[i].kind == SequenceStep::Kind::kPark ? i + 1 : begin;
+    begin = steps[i].kind == sequence::SequenceStep::Kind::kPark ? i + 1 : begin;
   }
   for (std::size_t i = begin; i < end; ++i) {
-    const SequenceStep& step = steps[i];
+    const sequence::SequenceStep& step = steps[i];
     const Turn& turn = turns_[i];
-    const bool is_insertion = step.kind == SequenceStep::Kind::kInsert;
-    const bool is_return = step.kind == SequenceStep::Kind::kReturn && !IsInVain(step);
+    const bool is_insertion = step.kind == sequence::SequenceStep::Kind::kInsert;
+    const bool is_return = step.kind == sequence::SequenceStep::Kind::kReturn && !IsInVain(step);
     if (!turn.is_finished || turn.is_seated || !(is_insertion || is_return) ||
         turn.tries >= (is_at_end ? kMostTries : kMostTries - 1) ||
         physics().placement(step.occurrence) == Placement::kPlaced ||
@@ -375,7 +376,7 @@ const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
   return nullptr;
 }
 
-bool AssemblyRun::DoNext(const SequenceStep& step) {
+bool AssemblyRun::DoNext(const sequence::SequenceStep& step) {
   if (turns_[next_step_].is_finished || IsInPlaceAlready(step)) {
     return true;
   }
@@ -386,14 +387,15 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
   if (IsInVain(step)) {
     return true;
   }
-  if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
+  if (step.kind == sequence::SequenceStep::Kind::kBase || next_step_ < first_step_) {
     physics().PlaceInFixture(step.occurrence);
     has_touched_[step.occurrence.index()] = true;
     Update(step.occurrence);
     ResultOf(step.occurrence).note = MakeNote(ResultOf(step.occurrence));
     return true;
   }
-  const bool is_refused = worker->person != nullptr && step.kind == SequenceStep::Kind::kInsert &&
+  const bool is_refused = worker->person != nullptr &&
+                          step.kind == sequence::SequenceStep::Kind::kInsert &&
                           physics().FindMissingPartner(step).is_valid();
   if (is_refused || IsDoneByAnother(step, *worker)) {
     FinishStep(step, *worker);
@@ -417,7 +419,8 @@ void AssemblyRun::Advance() {
   const auto& steps = model().sequence.steps;
   for (;;) {
     const bool is_at_end = next_step_ >= std::min(end_step_, steps.size());
-    if (const SequenceStep* again = HasFreePerson() ? FindStepToRepeat(is_at_end) : nullptr) {
+    if (const sequence::SequenceStep* again =
+            HasFreePerson() ? FindStepToRepeat(is_at_end) : nullptr) {
       Worker* worker = FindWorkerFor(*again);
       if (worker == nullptr || !Begin(*again, worker)) {
         return;

@@ -20,10 +20,10 @@ class AssemblyRun final : public PartRun {
  public:
   /** @param person  Null: a real one, who puts each part in its place in their own time.
    @param downstream  Gets everything too; may be null. */
-  AssemblyRun(Simulation* simulation, SimulatedPerson* person, Sink* downstream)
-      : AssemblyRun(simulation, Persons{person, nullptr}, downstream) {}
+  AssemblyRun(Simulation* simulation, TaskOperator* person, Sink* downstream)
+      : AssemblyRun(simulation, TaskOperators{person, nullptr}, downstream) {}
 
-  AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream);
+  AssemblyRun(Simulation* simulation, const TaskOperators& persons, Sink* downstream);
 
   /** Limits a run that has not begun to these steps of the sequence; what comes before them is in
  place. */
@@ -43,9 +43,9 @@ class AssemblyRun final : public PartRun {
  private:
   /** Who does the steps, one at a time: a simulated person, or the user of the devices. */
   struct Worker {
-    SimulatedPerson* person{nullptr};
+    TaskOperator* person{nullptr};
     std::size_t hand{0};  ///< The person's.
-    const SequenceStep* step{nullptr};
+    const sequence::SequenceStep* step{nullptr};
     int finished_before{0};
   };
 
@@ -62,21 +62,23 @@ class AssemblyRun final : public PartRun {
   [[nodiscard]] product::OccurrenceId LeaderOf(product::OccurrenceId id) const;
   /** How the part was let go last, alone or as a member of a subassembly of the table. */
   [[nodiscard]] const std::optional<SimulationEvent>& DropOf(product::OccurrenceId id) const;
-  [[nodiscard]] std::string ExplainFailure(const SequenceStep& step, const Worker& worker) const;
+  [[nodiscard]] std::string ExplainFailure(const sequence::SequenceStep& step,
+                                           const Worker& worker) const;
   [[nodiscard]] bool HasFinished(const Worker& worker) const;
   /** Another hand than the worker's has put it in its place. */
-  [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
+  [[nodiscard]] bool IsDoneByAnother(const sequence::SequenceStep& step,
+                                     const Worker& worker) const;
   /** The part was in its place before the run began. */
-  [[nodiscard]] bool IsInPlaceAlready(const SequenceStep& step) const;
+  [[nodiscard]] bool IsInPlaceAlready(const sequence::SequenceStep& step) const;
   /** A move within the product has nothing to move, or nothing to let pass. */
-  [[nodiscard]] bool IsInVain(const SequenceStep& step) const;
+  [[nodiscard]] bool IsInVain(const sequence::SequenceStep& step) const;
   /** The step of a part that was in its place before is to be done again. */
   void OnDropped(const SimulationEvent& dropped) override;
-  void FinishStep(const SequenceStep& step, const Worker& worker);
-  [[nodiscard]] std::size_t IndexOf(const SequenceStep& step) const;
+  void FinishStep(const sequence::SequenceStep& step, const Worker& worker);
+  [[nodiscard]] std::size_t IndexOf(const sequence::SequenceStep& step) const;
   /** Sets how a step that is finished went, and gives the reason why the part is not in its place.
    */
-  [[nodiscard]] std::string FinishTurn(const SequenceStep& step, const Worker& worker,
+  [[nodiscard]] std::string FinishTurn(const sequence::SequenceStep& step, const Worker& worker,
                                        bool was_seated);
   /** Explains why a part touches nothing when it gets to its place; empty where it does. */
   [[nodiscard]] std::string ExplainUntouched(product::OccurrenceId id) const;
@@ -89,21 +91,21 @@ class AssemblyRun final : public PartRun {
   [[nodiscard]] std::string MakeNote(const PartResult& result) const;
   /** A step that has failed and is to be tried again now; null: none.
    @param is_at_end  All steps have had their turn. */
-  [[nodiscard]] const SequenceStep* FindStepToRepeat(bool is_at_end) const;
+  [[nodiscard]] const sequence::SequenceStep* FindStepToRepeat(bool is_at_end) const;
   /** Whether a person who is free would do a step. */
   [[nodiscard]] bool HasFreePerson() const;
   /** Does the step whose turn it is; false where it has to wait. */
-  [[nodiscard]] bool DoNext(const SequenceStep& step);
+  [[nodiscard]] bool DoNext(const sequence::SequenceStep& step);
   /** Null where the step has to wait. */
-  [[nodiscard]] Worker* FindWorkerFor(const SequenceStep& step);
+  [[nodiscard]] Worker* FindWorkerFor(const sequence::SequenceStep& step);
   /** Around the part in its place and on its way there, where it engages. */
-  [[nodiscard]] spatial::Box WayIn(const SequenceStep& step) const;
-  [[nodiscard]] bool CanGoOnBeside(const SequenceStep& step, const Worker& busy) const;
+  [[nodiscard]] spatial::Box WayIn(const sequence::SequenceStep& step) const;
+  [[nodiscard]] bool CanGoOnBeside(const sequence::SequenceStep& step, const Worker& busy) const;
   /** A way in among what is in its place now, for a part or subassembly whose planned way was made
    for another state; the planned one where there is none. */
-  [[nodiscard]] SequenceStep PlanAgain(const SequenceStep& step) const;
+  [[nodiscard]] sequence::SequenceStep PlanAgain(const sequence::SequenceStep& step) const;
   /** False when the worker could not take it on now. */
-  bool Begin(const SequenceStep& step, Worker* worker);
+  bool Begin(const sequence::SequenceStep& step, Worker* worker);
   void FinishAll();
 
   std::vector<Worker> workers_;

@@ -45,9 +45,9 @@ const PointerInput& PointerOperator::ReadInput(bool sees_part, std::int64_t* age
   return wanted;
 }
 
-simulation::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
+person::HandReference PointerOperator::Intend(const simulation::OperatorInput& input) noexcept {
   constexpr double kReached = 5e-3;  // [m]: near enough to close on a part. A choice.
-  simulation::HandReference reference;
+  person::HandReference reference;
   const PointerInput& wanted = ReadInput(input.sees_part, &reference.client_age_ns);
   Follow(reference.client_age_ns < kInputTimeoutNs ? wanted.X_WH : X_WH_, input.dt);
   reference.X_WR = X_WH_;
