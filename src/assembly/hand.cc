@@ -3,17 +3,17 @@
 #include <utility>
 
 #include "base/check.h"
+#include "person/person_at_device.h"
 #include "simulation/assembly_run.h"
 #include "simulation/guided_hand.h"
 
 namespace hvas::assembly {
 namespace {
 
-std::unique_ptr<simulation::SimulatedPerson> MakePerson(const simulation::Model& model,
-                                                        const simulation::PersonOptions& habits,
-                                                        std::uint64_t seed) {
-  return std::make_unique<simulation::SimulatedPerson>(habits, seed,
-                                                       simulation::StartOfHand(model));
+std::unique_ptr<person::SimulatedPerson> MakePerson(const simulation::Model& model,
+                                                    const person::PersonOptions& habits,
+                                                    std::uint64_t seed) {
+  return std::make_unique<person::SimulatedPerson>(habits, seed, simulation::StartOfHand(model));
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ haptics::TickOptions MakePersonTick(const simulation::RenderOptions& render) {
 }
 
 Hand MakePersonHand(const simulation::Model& model, const haptics::TickOptions& tick,
-                    const simulation::PersonOptions& habits, std::uint64_t seed) {
+                    const person::PersonOptions& habits, std::uint64_t seed) {
   Hand hand;
   hand.tick = tick;
   hand.mover = MakePerson(model, habits, seed);
@@ -54,8 +54,8 @@ Hand MakeDeviceHand(const simulation::Model& model, device::OpenedDevice opened,
     hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
     return hand;
   }
-  auto person = MakePerson(model, simulation::MakePersonOptions(tick), seed);
-  hand.at_device = std::make_unique<simulation::PersonAtDevice>(
+  auto person = MakePerson(model, person::MakePersonOptions(tick), seed);
+  hand.at_device = std::make_unique<person::PersonAtDevice>(
       person.get(), hand.opened.emulator.get(), hand.opened.device.get(), is_live);
   hand.mover = std::move(person);
   return hand;
@@ -63,10 +63,9 @@ Hand MakeDeviceHand(const simulation::Model& model, device::OpenedDevice opened,
 
 Result<Hand> MakeHand(const simulation::Model& model, const HandOptions& options) {
   if (options.device.empty()) {
-    return options.person
-               ? MakePersonHand(model, MakePersonTick(options.render),
-                                simulation::MakeHabits(*options.person, {}), options.seed)
-               : MakeGuidedHand(model, options.render);
+    return options.person ? MakePersonHand(model, MakePersonTick(options.render),
+                                           person::MakeHabits(*options.person, {}), options.seed)
+                          : MakeGuidedHand(model, options.render);
   }
   auto opened = device::OpenAnyDevice(options.device, options.is_live);
   if (!opened) {

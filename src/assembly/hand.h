@@ -10,10 +10,10 @@
 #include "base/result.h"
 #include "device/opened_device.h"
 #include "haptics/options.h"
+#include "person/simulated_person.h"
 #include "simulation/device_session.h"
 #include "simulation/model.h"
 #include "simulation/operator.h"
-#include "simulation/simulated_person.h"
 
 namespace hvas::assembly {
 
@@ -39,7 +39,7 @@ struct Hand {
 /** Makes the hand of a simulated person without a device. The same habits and seed give the same
  hand. */
 [[nodiscard]] Hand MakePersonHand(const simulation::Model& model, const haptics::TickOptions& tick,
-                                  const simulation::PersonOptions& habits, std::uint64_t seed);
+                                  const person::PersonOptions& habits, std::uint64_t seed);
 
 /** Makes a hand that holds a device. A simulated person with this seed holds an emulated one, the
  user a real one.
@@ -61,7 +61,7 @@ struct HandOptions {
   std::uint64_t seed{1};  ///< Seed of the simulated person.
   bool is_live{false};    ///< Runs in real time; no real device works without it.
   /** How a simulated person without a device works; none: a guided hand. */
-  std::optional<simulation::PersonKind> person;
+  std::optional<person::PersonKind> person;
 };
 
 /** Opens the device, where one is asked for, and makes the hand that holds it, else a guided hand

@@ -26,7 +26,7 @@ struct PrepareOptions {
   fits::PairChoice pairs{fits::PairChoice::kOfKind};
   std::vector<std::string> first_parts;  ///< Names, paths or ids ("o12"); the others follow.
   std::string base;  ///< The part that stays in the fixture, likewise; empty: it is found.
-  std::vector<simulation::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
+  std::vector<sequence::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
   /** Called as simulation::CompileOptions has it; may be null. */

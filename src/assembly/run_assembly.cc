@@ -16,7 +16,7 @@ using simulation::PartResult;
 
 /** Explains why a part is not in its place after a run that was stopped before its turn ended. */
 std::string ExplainMissing(const Model& model, product::OccurrenceId id) {
-  const std::string reason = simulation::FindGapReason(model.sequence, id);
+  const std::string reason = sequence::FindGapReason(model.sequence, id);
   return reason.empty() ? "the run was stopped before its turn ended" : reason;
 }
 

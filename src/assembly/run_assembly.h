@@ -32,7 +32,7 @@ struct RunOptions {
   haptics::PaperGuidance guidance;  ///< Replaces constants of guidance where it has a value.
   simulation::RenderOptions render;
   /** How simulated persons without a device work; none: guided hands move the parts. */
-  std::optional<simulation::PersonKind> person;
+  std::optional<person::PersonKind> person;
   /** Three threads by the clock, as a real device needs them, instead of virtual time on the
    calling thread, in which the same options give the same digest. */
   bool is_realtime{false};

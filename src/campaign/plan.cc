@@ -235,9 +235,8 @@ class PlanReader {
         return;
       }
       const auto index = found - kPersons.begin();
-      plan_->persons.push_back(index == 0
-                                   ? std::nullopt
-                                   : std::optional(static_cast<simulation::PersonKind>(index - 1)));
+      plan_->persons.push_back(
+          index == 0 ? std::nullopt : std::optional(static_cast<person::PersonKind>(index - 1)));
     }
     const bool has_choice = plan_->method == Method::kAssemble;
     if (words.empty() || words.size() > kPersons.size() || (!has_choice && words.size() > 1)) {

@@ -225,7 +225,7 @@ std::string DescribePlay(const Plan& plan, const RunResult& run) {
     words += " --fit " + QuoteWord(fit);
   }
   if (const auto person = plan.persons[cell.person]) {
-    words += fmt::format(" --person {}", simulation::ToString(*person));
+    words += fmt::format(" --person {}", person::ToString(*person));
   }
   return words + fmt::format(" --sizes any --seed {} --record run-{}.hvasrec", run.seed, run.run);
 }

@@ -14,9 +14,9 @@
 namespace hvas::session {
 namespace {
 
+using sequence::SequenceStep;
 using simulation::GivenCommand;
 using simulation::PartState;
-using simulation::SequenceStep;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked", "pending"};
 constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return", "assume"};

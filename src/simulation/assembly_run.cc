@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "simulation/extraction.h"
+#include "sequence/extraction.h"
 #include "simulation/table_subassembly.h"
 
 namespace hvas::simulation {
@@ -22,15 +22,15 @@ bool IsConnectedWithBase(const Model& model, OccurrenceId id) {
   for (const Body& body : model.bodies) {
     all.push_back(body.occurrence);
   }
-  const auto connected = ListConnected(id, all, model.sequence.neighbours);
-  const OccurrenceId base = FindBase(model.sequence);
+  const auto connected = sequence::ListConnected(id, all, model.sequence.neighbours);
+  const OccurrenceId base = sequence::FindBase(model.sequence);
   return std::any_of(connected.begin(), connected.end(), [&](OccurrenceId other) {
     return other == base || model.bodies[other.index()].role == BodyRole::kFixture;
   });
 }
 
-bool IsSinglePart(const SequenceStep& step) {
-  return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+bool IsSinglePart(const sequence::SequenceStep& step) {
+  return step.kind == sequence::SequenceStep::Kind::kInsert && step.members.empty();
 }
 
 }  // namespace
@@ -78,7 +78,8 @@ const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const
   return dropped_[leader.is_valid() ? leader.index() : id.index()];
 }
 
-std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
+std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step,
+                                        const Worker& worker) const {
   const TaskOperator* mover = worker.mover;
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
   if (!dropped && mover == nullptr) {
@@ -100,16 +101,17 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
 }
 
-std::size_t AssemblyRun::IndexOf(const SequenceStep& step) const {
+std::size_t AssemblyRun::IndexOf(const sequence::SequenceStep& step) const {
   return static_cast<std::size_t>(&step - model().sequence.steps.data());
 }
 
-std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& worker,
+std::string AssemblyRun::FinishTurn(const sequence::SequenceStep& step, const Worker& worker,
                                     bool was_seated) {
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = true;
   if (was_seated) {
-    const bool is_unit = !step.members.empty() && step.kind == SequenceStep::Kind::kInsert;
+    const bool is_unit =
+        !step.members.empty() && step.kind == sequence::SequenceStep::Kind::kInsert;
     const std::size_t leader = step.occurrence.index();
     has_touched_[leader] = is_unit ? CountNeighboursInPlace(step) > 0 : has_touched_[leader];
     return {};
@@ -147,7 +149,7 @@ std::string AssemblyRun::ExplainPassage(const PartResult& result) const {
 }
 
 std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
-  const SequenceStep* aside = FindAside(model().sequence, id);
+  const sequence::SequenceStep* aside = sequence::FindAside(model().sequence, id);
   if (aside == nullptr || physics().placement(id) != Placement::kPlaced) {
     return {};
   }
@@ -167,11 +169,11 @@ std::string AssemblyRun::MakeNote(const PartResult& result) const {
   return note;
 }
 
-bool AssemblyRun::TryAgain(const SequenceStep& step, Worker* worker) {
+bool AssemblyRun::TryAgain(const sequence::SequenceStep& step, Worker* worker) {
   Turn& turn = turns_[IndexOf(step)];
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
   const bool has_failed =
-      step.kind == SequenceStep::Kind::kInsert && dropped && !dropped->was_seated;
+      step.kind == sequence::SequenceStep::Kind::kInsert && dropped && !dropped->was_seated;
   if (!has_failed || worker->mover == nullptr || turn.tries >= worker->mover->most_tries()) {
     return false;
   }
@@ -180,14 +182,14 @@ bool AssemblyRun::TryAgain(const SequenceStep& step, Worker* worker) {
   return Begin(step, worker);
 }
 
-void AssemblyRun::AssumeStep(const SequenceStep& step) {
-  for (const OccurrenceId id : UnitOf(step)) {
+void AssemblyRun::AssumeStep(const sequence::SequenceStep& step) {
+  for (const OccurrenceId id : sequence::UnitOf(step)) {
     Assume(id);
     Update(id);
   }
 }
 
-void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
+void AssemblyRun::FinishStep(const sequence::SequenceStep& step, const Worker& worker) {
   const Model& model = this->model();
   PartResult& result = ResultOf(step.occurrence);
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
@@ -195,7 +197,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   AddHold(step.occurrence);
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  if (step.kind != SequenceStep::Kind::kAside) {
+  if (step.kind != sequence::SequenceStep::Kind::kAside) {
     result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
     result.presses = was_seated ? ListPresses(step) : std::vector<PressedPair>();
   }
@@ -213,7 +215,8 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     PartResult& other = ResultOf(member);
     other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
   }
-  if (!was_seated && worker.mover != nullptr && step.kind == SequenceStep::Kind::kInsert) {
+  if (!was_seated && worker.mover != nullptr &&
+      step.kind == sequence::SequenceStep::Kind::kInsert) {
     AssumeStep(step);
   }
   Update(step.occurrence);
@@ -235,7 +238,7 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
   const OccurrenceId id = worker.step->occurrence;
-  if (IsWithinProduct(worker.step->kind)) {
+  if (sequence::IsWithinProduct(worker.step->kind)) {
     return IsInVain(*worker.step);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
@@ -243,25 +246,25 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
          (IsSinglePart(*worker.step) && physics().placement(id) == Placement::kPlaced);
 }
 
-bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
+bool AssemblyRun::IsDoneByAnother(const sequence::SequenceStep& step, const Worker& worker) const {
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
   return worker.mover != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
          dropped->hand != worker.hand;
 }
 
-bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
+bool AssemblyRun::IsInPlaceAlready(const sequence::SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
          physics().placement(step.occurrence) == Placement::kPlaced;
 }
 
-bool AssemblyRun::IsInVain(const SequenceStep& step) const {
+bool AssemblyRun::IsInVain(const sequence::SequenceStep& step) const {
   // The order has the part that passes after each one that goes aside.
   return HasNothingToMove(step) ||
-         (step.kind == SequenceStep::Kind::kAside &&
+         (step.kind == sequence::SequenceStep::Kind::kAside &&
           physics().placement((&step + 1)->occurrence) == Placement::kPlaced);
 }
 
-spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
+spatial::Box AssemblyRun::WayIn(const sequence::SequenceStep& step) const {
   constexpr double kRoom = 5e-3;  // [m] to each side, for searching and for error
   const Body& body = model().bodies[step.occurrence.index()];
   const spatial::Box place = spatial::Transform(body.X_WB_goal, body.shape->box_B());
@@ -274,13 +277,13 @@ spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
   return box.Expanded(kRoom);
 }
 
-bool AssemblyRun::CanGoOnBeside(const SequenceStep& step, const Worker& busy) const {
+bool AssemblyRun::CanGoOnBeside(const sequence::SequenceStep& step, const Worker& busy) const {
   const bool is_past_carrying = states_[busy.hand] >= haptics::HoldState::kCaptured;
   return is_past_carrying && IsSinglePart(step) && IsSinglePart(*busy.step) &&
          !WayIn(step).Overlaps(WayIn(*busy.step));
 }
 
-AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
+AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const sequence::SequenceStep& step) {
   Worker* free = nullptr;
   for (std::size_t i = 1; i <= workers_.size(); ++i) {
     Worker& worker = workers_[(last_worker_ + i) % workers_.size()];
@@ -293,9 +296,9 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
   return free;
 }
 
-bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
+bool AssemblyRun::Begin(const sequence::SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
-  SequenceStep possible = step;
+  sequence::SequenceStep possible = step;
   std::erase_if(possible.members,
                 [this](OccurrenceId id) { return physics().placement(id) == Placement::kLoose; });
   if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
@@ -332,7 +335,7 @@ std::size_t AssemblyRun::next_step() const {
 }
 
 void AssemblyRun::FinishAll() {
-  for (const SequenceGap& gap : model().sequence.gaps) {
+  for (const sequence::SequenceGap& gap : model().sequence.gaps) {
     ResultOf(gap.occurrence).reason = gap.reason;
   }
   for (const Body& body : model().bodies) {
@@ -343,7 +346,7 @@ void AssemblyRun::FinishAll() {
   is_done_ = true;
 }
 
-bool AssemblyRun::DoNext(const SequenceStep& step) {
+bool AssemblyRun::DoNext(const sequence::SequenceStep& step) {
   if (turns_[next_step_].is_finished || IsInPlaceAlready(step)) {
     return true;
   }
@@ -354,19 +357,20 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
   if (IsInVain(step)) {
     return true;
   }
-  if (step.kind == SequenceStep::Kind::kAssume) {
-    ResultOf(step.occurrence).reason = FindGapReason(model().sequence, step.occurrence);
+  if (step.kind == sequence::SequenceStep::Kind::kAssume) {
+    ResultOf(step.occurrence).reason = sequence::FindGapReason(model().sequence, step.occurrence);
     AssumeStep(step);
     return true;
   }
-  if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
+  if (step.kind == sequence::SequenceStep::Kind::kBase || next_step_ < first_step_) {
     physics().PlaceInFixture(step.occurrence);
     has_touched_[step.occurrence.index()] = true;
     Update(step.occurrence);
     ResultOf(step.occurrence).note = MakeNote(ResultOf(step.occurrence));
     return true;
   }
-  const bool is_refused = worker->mover != nullptr && step.kind == SequenceStep::Kind::kInsert &&
+  const bool is_refused = worker->mover != nullptr &&
+                          step.kind == sequence::SequenceStep::Kind::kInsert &&
                           physics().FindMissingPartner(step).is_valid();
   if (is_refused || IsDoneByAnother(step, *worker)) {
     FinishStep(step, *worker);

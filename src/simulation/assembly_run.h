@@ -47,7 +47,7 @@ class AssemblyRun final : public PartRun {
   struct Worker {
     TaskOperator* mover{nullptr};
     std::size_t hand{0};  ///< The mover's.
-    const SequenceStep* step{nullptr};
+    const sequence::SequenceStep* step{nullptr};
     int finished_before{0};
   };
 
@@ -62,27 +62,29 @@ class AssemblyRun final : public PartRun {
   [[nodiscard]] product::OccurrenceId LeaderOf(product::OccurrenceId id) const;
   /** How the part was let go last, alone or as a member of a subassembly of the table. */
   [[nodiscard]] const std::optional<SimulationEvent>& DropOf(product::OccurrenceId id) const;
-  [[nodiscard]] std::string ExplainFailure(const SequenceStep& step, const Worker& worker) const;
+  [[nodiscard]] std::string ExplainFailure(const sequence::SequenceStep& step,
+                                           const Worker& worker) const;
   [[nodiscard]] bool HasFinished(const Worker& worker) const;
   /** Another hand than the worker's has put it in its place. */
-  [[nodiscard]] bool IsDoneByAnother(const SequenceStep& step, const Worker& worker) const;
+  [[nodiscard]] bool IsDoneByAnother(const sequence::SequenceStep& step,
+                                     const Worker& worker) const;
   /** The part was in its place before the run began. */
-  [[nodiscard]] bool IsInPlaceAlready(const SequenceStep& step) const;
+  [[nodiscard]] bool IsInPlaceAlready(const sequence::SequenceStep& step) const;
   /** A move within the product has nothing to move, or nothing to let pass. */
-  [[nodiscard]] bool IsInVain(const SequenceStep& step) const;
+  [[nodiscard]] bool IsInVain(const sequence::SequenceStep& step) const;
   /** The step of a part that was in its place before is to be done again. */
   void OnDropped(const SimulationEvent& dropped) override;
-  void FinishStep(const SequenceStep& step, const Worker& worker);
+  void FinishStep(const sequence::SequenceStep& step, const Worker& worker);
   /** Whether a step that has failed is begun again by the same worker. */
-  [[nodiscard]] bool TryAgain(const SequenceStep& step, Worker* worker);
+  [[nodiscard]] bool TryAgain(const sequence::SequenceStep& step, Worker* worker);
   /** Calls on_part for a part whose turn is over. */
   void TellPart(product::OccurrenceId id, std::int64_t t_ns);
   /** Puts what a step moves where the drawing has it. */
-  void AssumeStep(const SequenceStep& step);
-  [[nodiscard]] std::size_t IndexOf(const SequenceStep& step) const;
+  void AssumeStep(const sequence::SequenceStep& step);
+  [[nodiscard]] std::size_t IndexOf(const sequence::SequenceStep& step) const;
   /** Sets how a step that is finished went, and gives the reason why the part is not in its place.
    */
-  [[nodiscard]] std::string FinishTurn(const SequenceStep& step, const Worker& worker,
+  [[nodiscard]] std::string FinishTurn(const sequence::SequenceStep& step, const Worker& worker,
                                        bool was_seated);
   /** Explains why a part touches nothing when it gets to its place; empty where it does. */
   [[nodiscard]] std::string ExplainUntouched(product::OccurrenceId id) const;
@@ -94,14 +96,14 @@ class AssemblyRun final : public PartRun {
   /** What is odd about a part's place. */
   [[nodiscard]] std::string MakeNote(const PartResult& result) const;
   /** Does the step whose turn it is; false where it has to wait. */
-  [[nodiscard]] bool DoNext(const SequenceStep& step);
+  [[nodiscard]] bool DoNext(const sequence::SequenceStep& step);
   /** Null where the step has to wait. */
-  [[nodiscard]] Worker* FindWorkerFor(const SequenceStep& step);
+  [[nodiscard]] Worker* FindWorkerFor(const sequence::SequenceStep& step);
   /** Around the part in its place and on its way there, where it engages. */
-  [[nodiscard]] spatial::Box WayIn(const SequenceStep& step) const;
-  [[nodiscard]] bool CanGoOnBeside(const SequenceStep& step, const Worker& busy) const;
+  [[nodiscard]] spatial::Box WayIn(const sequence::SequenceStep& step) const;
+  [[nodiscard]] bool CanGoOnBeside(const sequence::SequenceStep& step, const Worker& busy) const;
   /** False when the worker could not take it on now. */
-  bool Begin(const SequenceStep& step, Worker* worker);
+  bool Begin(const sequence::SequenceStep& step, Worker* worker);
   void FinishAll();
 
   std::vector<Worker> workers_;

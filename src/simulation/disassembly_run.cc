@@ -29,7 +29,7 @@ DisassemblyRun::DisassemblyRun(Simulation* simulation, const DisassemblyPlan* pl
 
 bool DisassemblyRun::IsOut(const Removal& removal) const {
   const Placement placement = physics().placement(removal.step.occurrence);
-  if (IsWithinProduct(removal.step.kind)) {
+  if (sequence::IsWithinProduct(removal.step.kind)) {
     return placement == PlacementAfter(removal.step.kind);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[removal.step.occurrence.index()];
@@ -37,7 +37,7 @@ bool DisassemblyRun::IsOut(const Removal& removal) const {
 }
 
 OccurrenceId DisassemblyRun::FindWall(const Removal& removal) const {
-  for (const Obstacle& obstacle : removal.waits_for) {
+  for (const sequence::Obstacle& obstacle : removal.waits_for) {
     if (physics().placement(obstacle.occurrence) == Placement::kPlaced) {
       return obstacle.occurrence;
     }
@@ -92,7 +92,7 @@ void DisassemblyRun::Finish(const Removal& removal, const std::string& reason) {
 }
 
 void DisassemblyRun::FinishAll() {
-  for (const SequenceGap& stuck : plan_.stuck) {
+  for (const sequence::SequenceGap& stuck : plan_.stuck) {
     Update(stuck.occurrence);
     ResultOf(stuck.occurrence).reason = stuck.reason;
   }

@@ -141,13 +141,15 @@ class PartRun : public Sink {
   void Update(product::OccurrenceId id);
   [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
   /** Lists what moves in a step is allowed with the parts that are in their places. */
-  [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(const SequenceStep& step) const;
+  [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(
+      const sequence::SequenceStep& step) const;
   /** Finds which of two parts a step moves while the other one is in its place: whether it is the
    first; none where it is not so. */
-  [[nodiscard]] std::optional<bool> FindMoved(const SequenceStep& step, product::OccurrenceId a,
+  [[nodiscard]] std::optional<bool> FindMoved(const sequence::SequenceStep& step,
+                                              product::OccurrenceId a,
                                               product::OccurrenceId b) const;
   /** Lists what moves in a step presses together in its place. */
-  [[nodiscard]] std::vector<PressedPair> ListPresses(const SequenceStep& step) const;
+  [[nodiscard]] std::vector<PressedPair> ListPresses(const sequence::SequenceStep& step) const;
   /** Describes what is pressed hardest, as in "presses spring together by 3.00 mm: 82.5 N (G d^4 /
    (8 D^3 n), Wahl)"; empty where it is nothing. */
   [[nodiscard]] std::string DescribePresses(const std::vector<PressedPair>& presses) const;
@@ -156,20 +158,20 @@ class PartRun : public Sink {
   [[nodiscard]] std::string DescribeAllowance(const PartAllowance& allowance, bool is_beyond,
                                               const std::string& more) const;
   /** Counts the parts in their place that hold what moves in a step, where it is to go. */
-  [[nodiscard]] std::size_t CountNeighboursInPlace(const SequenceStep& step) const;
+  [[nodiscard]] std::size_t CountNeighboursInPlace(const sequence::SequenceStep& step) const;
   /** Names the part that was pressed hardest in a hold, with the force. */
   [[nodiscard]] std::string DescribeHardest(const HoldMetrics& metrics) const;
   /** Whether no mate with a part in its place but planes guides what moves in a step. */
-  [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
+  [[nodiscard]] bool IsGuidedByPlanes(const sequence::SequenceStep& step) const;
   /** Whether all fits of a part with parts in their places have play. */
-  [[nodiscard]] bool HasOnlyPlay(const SequenceStep& step) const;
+  [[nodiscard]] bool HasOnlyPlay(const sequence::SequenceStep& step) const;
   /** Whether a part that a step moves within the product is not where the step begins. */
-  [[nodiscard]] bool HasNothingToMove(const SequenceStep& step) const;
+  [[nodiscard]] bool HasNothingToMove(const sequence::SequenceStep& step) const;
   /** The way of what moves in a step; empty where it is straight. A thread's is a helix where
    threads turn. */
-  [[nodiscard]] sweep::Path WayOf(const SequenceStep& step);
+  [[nodiscard]] paths::Path WayOf(const sequence::SequenceStep& step);
   /** The task of a person who puts in or takes out what moves in a step. */
-  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);
+  [[nodiscard]] PersonTask MakeTask(const sequence::SequenceStep& step);
 
   std::array<haptics::HoldState, haptics::kMaxHands> states_{};  ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
@@ -182,7 +184,7 @@ class PartRun : public Sink {
   Simulation* simulation_;
   Sink* downstream_;
   double lift_height_{0.05};
-  std::deque<GripWay> ways_;  // Of the tasks that were made.
+  std::deque<sequence::GripWay> ways_;  // Of the tasks that were made.
 };
 
 /** Where a person stands who has all parts on the table in front: the first pose of the hand. */

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "simulation/thread_faces.h"
+#include "sequence/thread_faces.h"
 
 namespace hvas::simulation {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kLeastDepthOfSize = 3e-4;
 
 /** A thread whose flanks are drawn: it is screwed in, for which going straight along it stands. */
 bool IsModelledThread(const product::Product& product, const product::Mate& mate) {
-  if (!mate.fit || mate.fit->kind != product::FitKind::kThread || !IsDrawnThread(mate)) {
+  if (!mate.fit || mate.fit->kind != product::FitKind::kThread || !sequence::IsDrawnThread(mate)) {
     return false;
   }
   const auto is_modelled = [&product](const product::Connector& side) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "product/ids.h"
-#include "simulation/grip_way.h"
+#include "sequence/grip_way.h"
 #include "spatial/pose.h"
 
 namespace hvas::simulation {
@@ -27,7 +27,7 @@ struct PersonTask {
   Vec3 extraction_W{Vec3::UnitZ()};  ///< Unit; the way out, that of the last piece of `way`.
   double engage_distance{0};         ///< [m] from the goal, where insertion begins.
   /** The way of the grip where it is not straight; outlives the task. Null: straight. */
-  const GripWay* way{nullptr};
+  const sequence::GripWay* way{nullptr};
   bool is_threaded{
       false};  ///< The way is that of its thread: it is turned along it, and no slot found.
   /** It has play in its hole, and touches it there: it may stick in it tilted, and pressing harder
@@ -48,7 +48,7 @@ struct PersonTask {
   /** How far from the goal along the way a grip is, looked for from `near` on [m]. RT-safe. */
   [[nodiscard]] double TravelOf(const spatial::Pose& X_WG, double near) const noexcept;
 
-  /** Unit; the direction outward of the way there. RT-safe. */
+  /** sequence::Unit; the direction outward of the way there. RT-safe. */
   [[nodiscard]] Vec3 OutwardAt(double travel) const noexcept;
 
   /** Where the part is clear of the others on the table. RT-safe. */

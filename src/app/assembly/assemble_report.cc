@@ -85,7 +85,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
        {"arrival_urad", 1e6 * part.arrival_angle},
        {"pose_error_um", units::ToUm(part.pose_error)},
        {"pose_error_urad", 1e6 * part.pose_error_angle}});
-  if (const auto* aside = simulation::FindAside(model.sequence, part.occurrence)) {
+  if (const auto* aside = sequence::FindAside(model.sequence, part.occurrence)) {
     json["moved_aside"] = MakeAsideJson(model, *aside);
   }
   json["allowances"] = nlohmann::ordered_json::array();
@@ -155,7 +155,7 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report, const Le
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
     json["parts"].push_back(ToJson(model, part));
-    if (const simulation::GapReason* reason = FindReason(left_out, part.occurrence)) {
+    if (const orders::GapReason* reason = FindReason(left_out, part.occurrence)) {
       json["parts"].back()["why"] = MakeGapReasonJson(model, *reason);
     }
   }

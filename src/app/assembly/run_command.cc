@@ -196,8 +196,8 @@ void AddReasonsOption(CLI::App* command, double* reasons_s) {
       ->capture_default_str();
 }
 
-std::vector<simulation::GapReason> ExplainLeftOut(const Model& model, double time_s, bool is_quiet,
-                                                  const std::stop_token& stop) {
+std::vector<orders::GapReason> ExplainLeftOut(const Model& model, double time_s, bool is_quiet,
+                                              const std::stop_token& stop) {
   if (model.sequence.gaps.empty() || time_s == 0) {
     return {};
   }
@@ -235,14 +235,14 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
   AddConditionOption(command, &options->run.condition);
   AddForceMapOption(command, &options->run.force_map);
   AddGuidanceOptions(command, &options->run.guidance);
-  Choices<simulation::PersonKind> persons;
-  for (const auto kind : {simulation::PersonKind::kCareful, simulation::PersonKind::kHasty,
-                          simulation::PersonKind::kStiff}) {
-    persons.emplace_back(simulation::ToString(kind), kind);
+  Choices<person::PersonKind> persons;
+  for (const auto kind :
+       {person::PersonKind::kCareful, person::PersonKind::kHasty, person::PersonKind::kStiff}) {
+    persons.emplace_back(person::ToString(kind), kind);
   }
   AddChoice(command, "--operator", &options->run.person,
-            Choices<std::optional<simulation::PersonKind>>{
-                {"guided", std::nullopt}, {"person", simulation::PersonKind::kCareful}},
+            Choices<std::optional<person::PersonKind>>{{"guided", std::nullopt},
+                                                       {"person", person::PersonKind::kCareful}},
             "What moves the parts without a device: a guided hand, which follows the planned ways, "
             "so that the result hangs on the product alone; or a simulated person, who aims, feels "
             "and searches; default: guided");

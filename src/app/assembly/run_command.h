@@ -12,7 +12,7 @@
 #include "app/product/load_product.h"
 #include "assembly/run_assembly.h"
 #include "base/result.h"
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 #include "simulation/model.h"
 
 namespace CLI {
@@ -35,9 +35,9 @@ void AddReasonsOption(CLI::App* command, double* reasons_s);
 
 /** Explains why parts of a model have no way in, with progress.
  @param time_s  For all of them [s]; 0: none is looked into. */
-[[nodiscard]] std::vector<simulation::GapReason> ExplainLeftOut(const simulation::Model& model,
-                                                                double time_s, bool is_quiet,
-                                                                const std::stop_token& stop);
+[[nodiscard]] std::vector<orders::GapReason> ExplainLeftOut(const simulation::Model& model,
+                                                            double time_s, bool is_quiet,
+                                                            const std::stop_token& stop);
 
 /** Words in which the progress of a run is told. */
 struct TurnWords {

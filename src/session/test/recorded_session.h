@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "person/simulated_person.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
 #include "session/replay.h"
 #include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
-#include "simulation/simulated_person.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::session::testing {
 
@@ -42,8 +42,8 @@ struct Stretch {
   }
 
   std::unique_ptr<simulation::Simulation> simulation;
-  simulation::SimulatedPerson first;
-  simulation::SimulatedPerson second;
+  person::SimulatedPerson first;
+  person::SimulatedPerson second;
   simulation::AssemblyRun run;
 };
 
