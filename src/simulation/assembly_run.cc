@@ -78,8 +78,22 @@ const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const
   return dropped_[leader.is_valid() ? leader.index() : id.index()];
 }
 
-std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step,
-                                        const Worker& worker) const {
+std::string AssemblyRun::DescribeWhere(const SimulationEvent& dropped) {
+  const Vec3 p_mm = units::ToMm(1.0) * dropped.X_WB.p();
+  std::string text = fmt::format(" at {:.2f} {:.2f} {:.2f} mm", p_mm.x(), p_mm.y(), p_mm.z());
+  const PassageWatch::Touch touch = passages_.FindTouch(
+      physics(), dropped.occurrence, dropped.X_WB,
+      dropped.metrics.hardest.is_valid() ? OccurrenceId(dropped.metrics.hardest.index())
+                                         : OccurrenceId());
+  if (touch.other.is_valid() && touch.own_face != contact::kNoFace &&
+      touch.other_face != contact::kNoFace) {
+    text += fmt::format(", its face {} at face {} of {}", touch.own_face, touch.other_face,
+                        PathOf(touch.other));
+  }
+  return text;
+}
+
+std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step, const Worker& worker) {
   const TaskOperator* mover = worker.mover;
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
   if (!dropped && mover == nullptr) {
@@ -98,7 +112,8 @@ std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step,
   const std::string tries =
       mover != nullptr ? mover->DescribeEffort() : std::string("was let go elsewhere");
   const char* crossed = metrics.is_thread_crossed ? ", with its thread crossed" : "";
-  return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
+  return fmt::format("{}{}{}{}; {}", tries, mover != nullptr ? DescribeWhere(*dropped) : "", depth,
+                     crossed, DescribeHardest(metrics));
 }
 
 std::size_t AssemblyRun::IndexOf(const sequence::SequenceStep& step) const {
@@ -159,9 +174,16 @@ std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
                             : fmt::format("goes in while {} is turned aside", moved);
 }
 
+std::string AssemblyRun::DescribePress(const PartResult& result) {
+  return result.needs_press()
+             ? fmt::format("needs a press: {:.3g} N, more than the {:.0f} N of a hand",
+                           result.fit_true, kMostHandForce)
+             : std::string();
+}
+
 std::string AssemblyRun::MakeNote(const PartResult& result) const {
   std::string note;
-  for (const std::string& item : {DescribeAllowances(result.allowances),
+  for (const std::string& item : {DescribePress(result), DescribeAllowances(result.allowances),
                                   DescribePresses(result.presses), DescribeAside(result.occurrence),
                                   ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
     note += (note.empty() || item.empty() ? "" : "; ") + item;

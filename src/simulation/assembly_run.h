@@ -63,7 +63,9 @@ class AssemblyRun final : public PartRun {
   /** How the part was let go last, alone or as a member of a subassembly of the table. */
   [[nodiscard]] const std::optional<SimulationEvent>& DropOf(product::OccurrenceId id) const;
   [[nodiscard]] std::string ExplainFailure(const sequence::SequenceStep& step,
-                                           const Worker& worker) const;
+                                           const Worker& worker);
+  /** Says where a part was let go, and which of its faces touched which one there. */
+  [[nodiscard]] std::string DescribeWhere(const SimulationEvent& dropped);
   [[nodiscard]] bool HasFinished(const Worker& worker) const;
   /** Another hand than the worker's has put it in its place. */
   [[nodiscard]] bool IsDoneByAnother(const sequence::SequenceStep& step,
@@ -93,6 +95,8 @@ class AssemblyRun final : public PartRun {
   [[nodiscard]] std::string ExplainPassage(const PartResult& result) const;
   /** Says which part is moved aside to let this one pass; empty where none is. */
   [[nodiscard]] std::string DescribeAside(product::OccurrenceId id) const;
+  /** Says that a part takes more than a hand; empty where it does not. */
+  [[nodiscard]] static std::string DescribePress(const PartResult& result);
   /** What is odd about a part's place. */
   [[nodiscard]] std::string MakeNote(const PartResult& result) const;
   /** Does the step whose turn it is; false where it has to wait. */

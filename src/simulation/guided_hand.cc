@@ -11,30 +11,32 @@ namespace hvas::simulation {
 namespace {
 
 // Choices, as docs/algorithms/guided_hand.md explains.
-constexpr double kCarrySpeed = 0.45;     // [m/s]
-constexpr double kApproachSpeed = 0.15;  // [m/s]
-constexpr double kInsertSpeed = 0.04;    // [m/s]
-constexpr double kStandOff = 4e-3;       // [m] before anything engages, from where it goes slowly
-constexpr double kGraspTime = 0.2;       // [s]
-constexpr double kSettleTime = 0.25;     // [s]
-constexpr double kReleaseTime = 0.1;     // [s]
-constexpr double kPutDownGap = 2e-3;     // [m] above the table
-constexpr double kAtReference = 0.2e-3;  // [m]: the hand is there
-constexpr double kCalm = 5e-3;           // [m/s]
-constexpr double kMostWait = 1.5;        // [s] for a hand to come to its reference
-constexpr double kLearnTime = 0.1;       // [s] in which a weight is learned
-constexpr double kCorrectTime = 0.08;    // [s] in which an error of the part is corrected
-constexpr double kMostOffset = 0.02;     // [m]
-constexpr double kMostTurn = 0.2;        // [rad]
-constexpr double kSlackTime = 0.08;      // [s]
-constexpr double kSpeedTime = 0.02;      // [s] over which the speed is measured
-constexpr double kSlowShare = 0.4;       // Of the speed that it wants; slower presses harder.
-constexpr double kFirstPush = 2;         // [N]
-constexpr double kPushRate = 40;         // [N/s]
-constexpr double kLeadPerForce = 2e-3;   // [m/N]: arm and coupling, one after the other
-constexpr double kNearer = 0.2e-3;       // [m] that count as coming on
-constexpr double kHeldUpTime = 1.5;      // [s]
-constexpr double kBackOff = 3e-3;        // [m] that it is drawn back
+constexpr double kCarrySpeed = 0.45;       // [m/s]
+constexpr double kApproachSpeed = 0.15;    // [m/s]
+constexpr double kInsertSpeed = 0.04;      // [m/s]
+constexpr double kStandOff = 4e-3;         // [m] before anything engages, from where it goes slowly
+constexpr double kGraspTime = 0.2;         // [s]
+constexpr double kSettleTime = 0.25;       // [s]
+constexpr double kReleaseTime = 0.1;       // [s]
+constexpr double kPutDownGap = 2e-3;       // [m] above the table
+constexpr double kAtReference = 0.2e-3;    // [m]: the hand is there
+constexpr double kCalm = 5e-3;             // [m/s]
+constexpr double kMostWait = 1.5;          // [s] for a hand to come to its reference
+constexpr double kLearnTime = 0.1;         // [s] in which a weight is learned
+constexpr double kCorrectTime = 0.15;      // [s] in which an error of the part is corrected
+constexpr double kMostOffset = 0.02;       // [m]
+constexpr double kMostTurn = 0.2;          // [rad]
+constexpr double kSlackTime = 0.08;        // [s]
+constexpr double kSpeedTime = 0.02;        // [s] over which the speed is measured
+constexpr double kSlowShare = 0.4;         // Of the speed that it wants; slower presses harder.
+constexpr double kFirstPush = 2;           // [N]
+constexpr double kPushRate = 40;           // [N/s]
+constexpr double kLeadPerForce = 1.25e-3;  // [m/N]: arm and coupling, one after the other
+constexpr double kHangs = 50e-6;           // [m]; nearer, a part hangs where it is meant to be
+constexpr double kTurned = 1e-3;           // [rad], likewise
+constexpr double kNearer = 0.2e-3;         // [m] that count as coming on
+constexpr double kHeldUpTime = 1.5;        // [s]
+constexpr double kBackOff = 3e-3;          // [m] that it is drawn back
 constexpr int kMostTries = 3;
 
 }  // namespace
@@ -52,7 +54,7 @@ GuidedHand::GuidedHand(const spatial::Pose& X_WH)
     : arm_(MakeArm()), X_WH_(X_WH), p_ref_(X_WH.p()), q_ref_(X_WH.q()) {}
 
 std::string GuidedHand::DescribeEffort() const {
-  return fmt::format("was held up {:.2f} mm before its place on its planned way",
+  return fmt::format("path-not-followed: held up {:.2f} mm before its place on its planned way",
                      units::ToMm(held_up_at_));
 }
 
@@ -234,14 +236,15 @@ void GuidedHand::StepPhase(const OperatorInput& input) noexcept {
       break;
     case Phase::kCarry: {
       load_W_ += (input.F_H_D.f - load_W_) * (dt_ / kLearnTime);
-      const bool is_there = FollowReaches();
+      (void)FollowReaches();
       const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
-      const spatial::Pose X_WR(q_ref_, p_ref_);
+      const spatial::Twist error{spatial::RotationBetween(X_WG.q(), q_ref_), p_ref_ - X_WG.p()};
       if (reaches_.is_done()) {
-        Correct({spatial::RotationBetween(X_WG.q(), X_WR.q()), X_WR.p() - X_WG.p()});
+        Correct(error);
       }
-      Refer(X_WR);
-      if (is_there || (reaches_.is_done() && phase_time_s_ > 6 * kCorrectTime)) {
+      Refer({q_ref_, p_ref_});
+      const bool hangs_there = error.v.norm() < kHangs && error.w.norm() < kTurned;
+      if (reaches_.is_done() && (hangs_there || phase_time_s_ > kMostWait)) {
         BeginFollow();
       }
       break;

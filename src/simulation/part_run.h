@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/arm.h"
 #include "simulation/executors.h"
 #include "simulation/passage_watch.h"
 #include "simulation/pressed_pairs.h"
@@ -73,6 +74,9 @@ struct PartResult {
    seated part stands where they say. */
   double pose_error{0};
   double pose_error_angle{0};  ///< [rad]
+
+  /** Its fits take more than kMostHandForce. */
+  [[nodiscard]] bool needs_press() const { return fit_true > kMostHandForce; }
 };
 
 /** How far an assembly has come. */

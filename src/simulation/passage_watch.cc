@@ -93,6 +93,28 @@ void PassageWatch::LookAt(OccurrenceId leader, OccurrenceId id, const spatial::P
   }
 }
 
+PassageWatch::Touch PassageWatch::FindTouch(const PhysicsSide& physics, OccurrenceId id,
+                                            const spatial::Pose& X_WB, OccurrenceId with) {
+  constexpr double kNear =
+      0.1e-3;  // [m]; what pressed on it was let go and may have moved by that.
+  PlaceOthers(physics);
+  contact::QueryOptions query;
+  query.margin = kNear;
+  query.self = contact::BodyId(id.index());
+  scene_.Query(*model_.bodies[id.index()].shape, X_WB, query, &workspace_);
+  Touch touch;
+  double least = kNear;
+  for (const contact::Contact& contact : workspace_.contacts()) {
+    const bool is_meant =
+        contact.body.is_valid() && (!with.is_valid() || contact.body.index() == with.index());
+    if (is_meant && contact.distance < least) {
+      least = contact.distance;
+      touch = {OccurrenceId(contact.body.index()), contact.held_face, contact.scene_face};
+    }
+  }
+  return touch;
+}
+
 void PassageWatch::Query(OccurrenceId id, const spatial::Pose& X_WB) {
   contact::QueryOptions query;
   query.margin = -LeastDepthOf(model_.product->part_of(id));

@@ -79,6 +79,7 @@ nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
       {{"beyond_drawn_um", units::ToUm(passage.depth)},
        {"beyond_drawn_in", passage.through.is_valid() ? PathOf(model, passage.through) : ""},
        {"insertion_mm", units::ToMm(part.insertion)},
+       {"needs_press", part.needs_press()},
        {"mates", part.mates},
        {"touched", part.has_touched},
        {"arrival_um", units::ToUm(part.arrival)},
