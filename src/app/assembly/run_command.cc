@@ -51,7 +51,9 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
   if (!product) {
     return Unexpected(product.error());
   }
-  progress->parts = product->occurrences.size();
+  for (const product::Occurrence& occurrence : product->occurrences) {
+    progress->parts.push_back(occurrence.path);
+  }
   assembly::PrepareOptions prepare;
   prepare.seed = options.run.seed;
   prepare.pairs = options.pairs;
@@ -144,8 +146,12 @@ int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress
         {"stage", progress.stage},
         {"stage_fraction", progress.fraction},
         {"preparation_s", 1e-9 * static_cast<double>(MonotonicNs() - progress.start_ns)}};
-    if (progress.parts) {
-      json["parts"] = *progress.parts;
+    json["parts"] = nlohmann::ordered_json::array();
+    for (const std::string& name : progress.parts) {
+      json["parts"].push_back({{"name", name},
+                               {"seated", false},
+                               {"is_assumed", false},
+                               {"reason", "the preparation ended before its turn"}});
     }
     PrintJson(json);
   }

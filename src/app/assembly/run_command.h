@@ -49,10 +49,10 @@ struct TurnWords {
 
 /** How far a preparation has come. */
 struct PreparationProgress {
-  std::int64_t start_ns{0};          ///< When it began, on the monotonic clock.
-  std::string stage;                 ///< The last one that was reported; empty: none was.
-  double fraction{0};                ///< The share of this stage that is done, from 0 to 1.
-  std::optional<std::size_t> parts;  ///< Occurrences of the product, once it is read.
+  std::int64_t start_ns{0};        ///< When it began, on the monotonic clock.
+  std::string stage;               ///< The last one that was reported; empty: none was.
+  double fraction{0};              ///< The share of this stage that is done, from 0 to 1.
+  std::vector<std::string> parts;  ///< Paths of the occurrences, once the product is read.
 };
 
 /** What the user wishes of the order of assembly. */
