@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/digest.h"
+#include "person/simulated_person.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 
