@@ -189,8 +189,7 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceSt
   std::string reason =
       extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
   if (graph->is_limited()) {
-    reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
-                          BlockingGraph::kMostWays);
+    reason += "; the search for parts that come out together was ended";
   }
   sequence->gaps.push_back({id, std::move(reason)});
   SequenceStep assumed;
