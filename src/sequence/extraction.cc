@@ -716,14 +716,6 @@ bool Extraction::AllowBeyondDrawn(const Unit& parts) {
   return !changed.empty();
 }
 
-void Extraction::Restart() {
-  gives_.clear();
-  for (const product::Occurrence& occurrence : product_.occurrences) {
-    Forget({occurrence.id});
-    allowances_[occurrence.id.index()] = ListAllowances(overlaps_, gives_, occurrence.id);
-  }
-}
-
 void Extraction::Forget(const Unit& parts) {
   for (const OccurrenceId id : parts) {
     memories_[id.index()] = {};

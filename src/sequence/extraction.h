@@ -200,9 +200,6 @@ class Extraction {
    */
   bool AllowBeyondDrawn(const Unit& parts);
 
-  /** Forgets what was tried, and what was found to give: the parts are taken apart once more. */
-  void Restart();
-
   /** Forgets what TryRemoveOne and TryRemoveGiving have tried with these parts, and TryRemove with
    any unit. */
   void Forget(const Unit& parts);
