@@ -8,6 +8,7 @@
 #include "arguments.h"
 #include "bindings.h"
 #include "evidence/picture.h"
+#include "person/simulated_person.h"
 
 namespace hvas::python {
 namespace {

@@ -17,7 +17,7 @@ bool IsPartOf(const Unit& unit, OccurrenceId id) {
 }  // namespace
 
 BlockingGraph::BlockingGraph(Extraction* extraction, const Unit& parts)
-    : extraction_(*extraction), parts_(parts) {
+    : extraction_(*extraction), parts_(parts), limit_(extraction->budget().left() / 4) {
   for (const OccurrenceId id : parts_) {
     std::vector<std::size_t>& own = own_directions_[id];
     for (const Vec3& direction : extraction_.ListDirections({id})) {
@@ -49,16 +49,18 @@ const BlockingGraph::Way* BlockingGraph::FindWay(OccurrenceId id, std::size_t di
   if (known != ways_.end()) {
     return &known->second;
   }
-  if (ways_.size() >= kMostWays) {
+  if (ways_.size() >= kMostWays || spent_ >= limit_) {
     is_limited_ = true;
     return nullptr;
   }
+  const std::uint64_t before = extraction_.budget().spent();
   Way way;
   const OccurrenceId base = parts_.back();
   for (const Obstacle& obstacle : extraction_.ListObstacles({id}, directions_[direction], base)) {
     way.is_closed = way.is_closed || !IsThere(obstacle.occurrence) || obstacle.occurrence == base;
     way.obstacles.push_back(obstacle.occurrence);
   }
+  spent_ += extraction_.budget().spent() - before;
   return &ways_.emplace(Key{id, direction}, std::move(way)).first->second;
 }
 

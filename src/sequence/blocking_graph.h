@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -23,7 +24,8 @@ class BlockingGraph {
     Vec3 direction{Vec3::Zero()};
   };
 
-  /** Largest number of ways that are looked at; FindBody() finds nothing more after it. */
+  /** Largest number of ways that are looked at; FindBody() finds nothing more after it, or when a
+   quarter of what is left of the search is spent. */
   static constexpr std::size_t kMostWays = 6000;
 
   /** @param extraction  Outlives this object.
@@ -70,6 +72,8 @@ class BlockingGraph {
   std::map<product::OccurrenceId, std::vector<std::size_t>> own_directions_;
   std::map<Key, Way> ways_;
   std::vector<Unit> excluded_;
+  std::uint64_t limit_;  // Of the budget: a quarter of what was left. A choice.
+  std::uint64_t spent_{0};
   bool is_limited_{false};
 };
 

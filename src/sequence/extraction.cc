@@ -52,7 +52,8 @@ Extraction::Extraction(const SequenceInput& input, const Sequence* known)
       giving_memories_(product_.occurrences.size()),
       reliefs_(input),
       bending_memories_(product_.occurrences.size()),
-      searches_(product_.occurrences.size()) {
+      searches_(product_.occurrences.size()),
+      budget_(input.queries) {
   std::map<product::PartId, std::vector<Vec3>> lines_of_part;
   for (const product::Occurrence& occurrence : product_.occurrences) {
     const auto [entry, is_new] = lines_of_part.try_emplace(occurrence.part);
@@ -431,12 +432,13 @@ std::optional<Obstacle> Extraction::FindBlocker(const Unit& unit, const Vec3& di
       return Obstacle{OccurrenceId(), s, {}};  // No way is found any more.
     }
     for (const Member& member : members) {
-      ++straight_looks_;
       contact::QueryOptions query = MakeQuery(member, kDepthTolerance);
       query.left_out[1] = excepted;
       const spatial::Pose X = CalcPoseAlong(member.id, s * direction);
-      if (!input_.scene->IsFree(input_.scene->shape(query.self), X, kDepthTolerance, query,
-                                &workspace_)) {
+      const bool is_free = input_.scene->IsFree(input_.scene->shape(query.self), X, kDepthTolerance,
+                                                query, &workspace_);
+      CountQuery();
+      if (!is_free) {
         const auto contacts = workspace_.contacts();
         return Obstacle{
             contacts.empty() ? OccurrenceId() : OccurrenceId(contacts[0].body.index()), s, {}};
@@ -712,14 +714,6 @@ bool Extraction::AllowBeyondDrawn(const Unit& parts) {
     Forget(parts);
   }
   return !changed.empty();
-}
-
-void Extraction::Restart() {
-  gives_.clear();
-  for (const product::Occurrence& occurrence : product_.occurrences) {
-    Forget({occurrence.id});
-    allowances_[occurrence.id.index()] = ListAllowances(overlaps_, gives_, occurrence.id);
-  }
 }
 
 void Extraction::Forget(const Unit& parts) {

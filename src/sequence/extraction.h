@@ -13,6 +13,7 @@
 #include "paths/way.h"
 #include "sequence/face_reliefs.h"
 #include "sequence/giving_force.h"
+#include "sequence/search_budget.h"
 #include "sequence/sequence.h"
 
 namespace hvas::sequence {
@@ -135,8 +136,10 @@ class Extraction {
 
   /** Takes out the first of these parts that can go along a way of several pieces, or one that
    turns, and erases it from them. Parts that are held by more than clearance as drawn are not
-   tried, and all searches together take no more looks than kMostLooks, at no more points than
-   kMostPoints.
+   tried, nor those that are proven to have no way (gap_proof.h). A search is made again only with
+   more queries, or when a part near to where it got is there no more; all of them take what is left
+   of SequenceInput::queries, in a long search each part an equal share of it, those first that
+   have least to go.
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(Unit* rest, const Unit& deferred,
                                                              TurningEffort effort);
@@ -145,14 +148,10 @@ class Extraction {
    along a straight line or about the axis of its mates, and erases it from them: a bolt is slid
    aside, a drawer is opened, a lid is turned up. The part that is moved goes back, so that all else
    is as before. Parts that are held by more than clearance are not moved, and all searches together
-   take no more looks than kMostPassingLooks.
+   take no more than a quarter of SequenceInput::queries.
    @param deferred  Sorted; parts that are tried after all others.
    @returns the steps in the order of assembly: aside, the part's own, back; empty: none can go. */
   [[nodiscard]] std::vector<SequenceStep> TryRemovePast(Unit* rest, const Unit& deferred);
-
-  /** How many looks at a part the search for what can be moved aside takes in all: some seconds to
-   a minute. A choice. */
-  static constexpr std::uint64_t kMostPassingLooks = 400'000;
 
   /** Says that the search for what can be moved aside was ended; empty where it was not. */
   [[nodiscard]] std::string ExplainPassing() const;
@@ -162,14 +161,6 @@ class Extraction {
 
   /** Moves it back into its place. */
   void MoveBack(product::OccurrenceId id);
-
-  /** How many looks at a part, in all, the search for ways that turn takes: some minutes. A choice.
-   */
-  static constexpr std::uint64_t kMostLooks = 3'000'000;
-  /** How many sample points they test, about 3 million a second: in all, and for one part. Choices,
-   as a person waits. */
-  static constexpr std::uint64_t kMostPoints = 300'000'000;
-  static constexpr std::uint64_t kMostPointsOfOne = 250'000'000;
 
   /** What the search for ways that turn found of a part that it did not take out; empty where it
    did not look. */
@@ -198,16 +189,16 @@ class Extraction {
   [[nodiscard]] bool IsWayFree(product::OccurrenceId id,
                                const std::vector<spatial::Pose>& way) const;
 
-  /** How many looks at parts all calls have taken so far. */
-  [[nodiscard]] std::uint64_t looks() const { return looks_ + straight_looks_; }
+  /** How many contact queries all calls have taken so far. */
+  [[nodiscard]] std::uint64_t looks() const { return looks_; }
+
+  /** What the search for an order may take, and has taken. */
+  [[nodiscard]] const SearchBudget& budget() const { return budget_; }
 
   /** Allows those of these parts that overlap as drawn, and block one another's ways, half a
    millimetre more than the drawn depth, with all their faces. Returns false where there are none.
    */
   bool AllowBeyondDrawn(const Unit& parts);
-
-  /** Forgets what was tried, and what was found to give: the parts are taken apart once more. */
-  void Restart();
 
   /** Forgets what TryRemoveOne and TryRemoveGiving have tried with these parts, and TryRemove with
    any unit. */
@@ -396,6 +387,8 @@ class Extraction {
     std::uint64_t looks{0};
     std::vector<bool> is_present;  // What was there, by occurrence.
     double gone{0};                // The farthest that it got [m].
+    double to_go{0};               // How far boxes still overlap there [m].
+    bool is_proven{false};         // Contacts hold the part, or a cage: it was not searched for.
     product::OccurrenceId stopped_by;
   };
 
@@ -404,10 +397,21 @@ class Extraction {
   /** Searches for a way that turns, with as many looks at most. */
   [[nodiscard]] std::optional<SequenceStep> FindTurningWay(product::OccurrenceId id,
                                                            std::uint64_t budget);
-  /** Looks at those parts that are to be tried, with so many looks at most for each. */
+  /** Searches briefly with those parts that are to be tried, with so many looks for each. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(
       Unit* rest, const Unit& deferred, std::uint64_t budget,
-      const std::function<bool(product::OccurrenceId, const Search&)>& is_tried);
+      const std::function<bool(product::OccurrenceId)>& is_tried);
+  /** Searches with what is left of the budget. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurningLong(Unit* rest, const Unit& deferred);
+  /** Takes a part out along a way that turns, and erases it from `rest`. */
+  [[nodiscard]] std::optional<SequenceStep> TryRemoveTurning(product::OccurrenceId id,
+                                                             std::uint64_t budget, Unit* rest);
+  /** Whether a search with so many looks at most may find more than the last one. */
+  [[nodiscard]] bool IsWorthSearching(product::OccurrenceId id, std::uint64_t budget) const;
+  /** Whether another part than before is there, or not there, where the last search got. */
+  [[nodiscard]] bool HasChangedNearby(product::OccurrenceId id) const;
+  /** Whether it is proven that a part has no way as long as the others stay. */
+  [[nodiscard]] bool IsProvenStuck(product::OccurrenceId id, bool is_long) const;
   /** Whether a mate holds a part by more than clearance: ways along it alone are true. */
   [[nodiscard]] bool IsHeldFirmly(product::OccurrenceId id) const;
 
@@ -446,17 +450,19 @@ class Extraction {
   /** The step of a part with another one aside; it stays where it is. */
   [[nodiscard]] std::optional<SequenceStep> FindWayPast(product::OccurrenceId id);
 
-  [[nodiscard]] bool IsPassingOver() const { return passing_looks_ >= kMostPassingLooks; }
-
-  std::uint64_t passing_looks_{0};
-
-  [[nodiscard]] bool IsSearchOver() const {
-    return looks_ >= kMostLooks || points_looked_at_ >= kMostPoints;
+  [[nodiscard]] bool IsPassingOver() const {
+    return budget_.is_over() || passing_spent_ >= budget_.total() / 4;
   }
 
-  std::uint64_t looks_{0};  // Of searches for ways that turn.
-  std::uint64_t straight_looks_{0};
-  std::uint64_t points_looked_at_{0};
+  /** Counts the last query of the workspace. */
+  void CountQuery() {
+    ++looks_;
+    budget_.Spend(1, workspace_.stats().points_tested);
+  }
+
+  SearchBudget budget_;
+  std::uint64_t passing_spent_{0};  // Of the budget.
+  std::uint64_t looks_{0};
   double clearance_{0};           // Of kByClearance [m].
   std::vector<bool> is_cleared_;  // Of kByClearance, by occurrence.
   Giving giving_{Giving::kNone};

@@ -117,9 +117,9 @@ void Extraction::VisitContacts(
     OccurrenceId id, const Vec3& direction, const contact::QueryOptions& query, double step,
     int last, const std::function<void(const contact::Contact&, double travelled)>& visit) {
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
-    ++straight_looks_;
     input_.scene->Query(input_.scene->shape(query.self), CalcPoseAlong(id, i * step * direction),
                         query, &workspace_);
+    CountQuery();
     for (const contact::Contact& contact : workspace_.contacts()) {
       visit(contact, i * step);
     }
@@ -293,9 +293,9 @@ std::optional<Obstacle> Extraction::FindSqueezed(OccurrenceId id, const Vec3& di
   };
 
   for (int i = 0; i <= last && !input_.stop.stop_requested(); ++i) {
-    ++straight_looks_;
     const spatial::Pose X_WB = CalcPoseAlong(id, i * step * direction);
     input_.scene->Query(input_.scene->shape(query.self), X_WB, query, &workspace_);
+    CountQuery();
     std::map<OccurrenceId, Side> sides;
     for (const contact::Contact& contact : workspace_.contacts()) {
       const Vec3& n_W = contact.nhat_W;

@@ -92,8 +92,9 @@ paths::Path Extraction::FindFreeWay(OccurrenceId id, const InnerMotion& motion) 
   const double length = (motion.way.back().p() - motion.way.front().p()).norm();
   paths::Path way = paths::Resample(motion.way, shape.box_B(), CalcStep({id}, length));
   const auto met = std::find_if(way.begin(), way.end(), [&](const spatial::Pose& X_WB) {
-    ++straight_looks_;
-    return !input_.scene->IsFree(shape, X_WB, kDepthTolerance, query, &workspace_);
+    const bool is_free = input_.scene->IsFree(shape, X_WB, kDepthTolerance, query, &workspace_);
+    CountQuery();
+    return !is_free;
   });
   way.erase(met, way.end());
   SetUnit({id}, false);
@@ -151,11 +152,11 @@ std::optional<Extraction::Passing> Extraction::FindPassing(OccurrenceId moved,
     std::vector<Passing> range;
     for (std::size_t place = 1; place <= kPlaces && !IsPassingOver(); ++place) {
       const std::size_t last = (way.size() - 1) * place / kPlaces;
-      const std::uint64_t before = straight_looks_;
+      const std::uint64_t before = budget_.spent();
       MoveAside(moved, way[last]);
       std::optional<SequenceStep> step = FindWayPast(id);
       MoveBack(moved);
-      passing_looks_ += straight_looks_ - before;
+      passing_spent_ += budget_.spent() - before;
       const bool is_same_way =
           step && (range.empty() || step->extraction_W == range.front().step.extraction_W);
       if (!is_same_way && !range.empty()) {
@@ -178,9 +179,9 @@ std::vector<SequenceStep> Extraction::TryRemovePast(OccurrenceId moved, const Un
     if (IsPassingOver() || input_.stop.stop_requested()) {
       break;
     }
-    const std::uint64_t before = straight_looks_;
+    const std::uint64_t before = budget_.spent();
     paths::Path way = FindFreeWay(moved, motion);
-    passing_looks_ += straight_looks_ - before;
+    passing_spent_ += budget_.spent() - before;
     if (way.size() < 2 || paths::CalcLargestMove(way.front(), way.back(), box_B) < kLeastTravel) {
       continue;
     }
@@ -223,8 +224,8 @@ std::vector<SequenceStep> Extraction::TryRemovePast(Unit* rest, const Unit& defe
 std::string Extraction::ExplainPassing() const {
   return IsPassingOver() ? fmt::format(
                                "; the search for a part that can be moved aside was ended "
-                               "after {} looks",
-                               passing_looks_)
+                               "after {} queries",
+                               passing_spent_)
                          : std::string();
 }
 

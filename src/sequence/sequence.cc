@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "sequence/base_choice.h"
-#include "sequence/blocking_graph.h"
 #include "sequence/extraction.h"
+#include "sequence/strategies.h"
 
 namespace hvas::sequence {
 namespace {
@@ -23,7 +24,8 @@ class Planner {
       : input_(input),
         product_(*input.product),
         extraction_(input, nullptr),
-        neighbours_(FindNeighbours(product_, *input.scene, input.absent, input.stop)) {}
+        neighbours_(FindNeighbours(product_, *input.scene, input.absent, input.stop)),
+        strategies_(ListStrategies()) {}
 
   Sequence Plan();
 
@@ -33,111 +35,37 @@ class Planner {
   /** Takes apart the parts given, with nothing else there; appends the steps that put them
    together, those of subassemblies first. */
   void PlanLevel(Unit parts, Sequence* sequence);
-  /** Takes out of `rest` what can go next, or gives up a part. */
-  void TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
-                   std::vector<SequenceStep>* removed, Sequence* sequence);
-  /** Finds a part that comes out of `rest` as one body with those that would hang in the air
-   without it, and plans them. */
-  [[nodiscard]] bool TakeOutWithHanging(const Unit& connecting, Unit* rest,
-                                        std::vector<SequenceStep>* removed, Sequence* sequence);
-  /** Finds a subassembly that comes out of `rest` as one body, and plans it. */
-  [[nodiscard]] bool TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
-                                        Sequence* sequence);
-  /** Finds several parts that come out of `rest` as one body although the file has no subassembly
-   of them, or a part that comes out along a direction of another one, and plans them. */
-  [[nodiscard]] bool TakeOutBody(BlockingGraph* graph, Unit* rest,
-                                 std::vector<SequenceStep>* removed, Sequence* sequence);
-  /** Plans a unit that has come out of `rest` in one step: put together by itself, with nothing
-   else there, then set aside until its turn. */
-  void PutAside(const Unit& unit, SequenceStep step, Unit* rest, std::vector<SequenceStep>* removed,
+  /** Takes out of a level what comes out by the cheapest strategy. */
+  [[nodiscard]] std::optional<TakenOut> TakeOut(Level* level) const;
+  /** Appends the steps of what has come out to `removed`. What are several parts is put together by
+   itself, with nothing else there, then set aside until its turn.
+   @param others  Parts of the level that are still there. */
+  void PutAside(TakenOut out, const Unit& others, std::vector<SequenceStep>* removed,
                 Sequence* sequence);
   /** Gives up the part whose absence lets most others come out, or the smallest: it is assumed to
    come out. */
-  void GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
-                 Sequence* sequence);
-  /** Parts of which others would hang in the air if they came out before them, sorted. */
-  [[nodiscard]] Unit ListConnecting(const Unit& rest) const;
-  /** Parts of `rest` that are connected with what stays only by this one: what stays are the base
-   and the fixtures, or the largest part where it is not connected with those. */
-  [[nodiscard]] Unit ListHanging(OccurrenceId id, const Unit& rest) const;
-  /** `rest`, and the fixtures. */
-  [[nodiscard]] Unit WithFixtures(const Unit& rest) const;
-  [[nodiscard]] Unit PresentBelow(product::SubassemblyId id) const;
+  void GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequence* sequence);
 
   const SequenceInput& input_;
   const Product& product_;
   Extraction extraction_;
   Neighbours neighbours_;
+  std::vector<std::unique_ptr<Strategy>> strategies_;
   std::size_t planned_{0};
 };
 
-Unit Planner::PresentBelow(product::SubassemblyId id) const {
-  Unit unit;
-  const product::Subassembly& node = product_.subassemblies[id.index()];
-  for (const OccurrenceId occurrence : node.occurrences) {
-    if (extraction_.is_present(occurrence)) {
-      unit.push_back(occurrence);
-    }
+void Planner::PutAside(TakenOut out, const Unit& others, std::vector<SequenceStep>* removed,
+                       Sequence* sequence) {
+  if (out.unit.size() == 1) {
+    removed->insert(removed->end(), out.steps.rbegin(), out.steps.rend());
+    return;
   }
-  for (const product::SubassemblyId child : node.subassemblies) {
-    const Unit below = PresentBelow(child);
-    unit.insert(unit.end(), below.begin(), below.end());
-  }
-  return unit;
-}
-
-bool Planner::TakeOutWithHanging(const Unit& connecting, Unit* rest,
-                                 std::vector<SequenceStep>* removed, Sequence* sequence) {
-  for (const OccurrenceId id : *rest) {
-    if (id == rest->back() || !std::binary_search(connecting.begin(), connecting.end(), id)) {
-      continue;
-    }
-    Unit unit = ListHanging(id, *rest);
-    if (unit.empty()) {
-      continue;
-    }
-    unit.push_back(id);
-    std::optional<SequenceStep> step = extraction_.TryRemove(unit);
-    if (step) {
-      PutAside(unit, std::move(*step), rest, removed, sequence);
-      return true;
-    }
-  }
-  return false;
-}
-
-bool Planner::TakeOutSubassembly(Unit* rest, std::vector<SequenceStep>* removed,
-                                 Sequence* sequence) {
-  for (const product::Subassembly& node : product_.subassemblies) {
-    Unit unit = PresentBelow(node.id);
-    const bool has_base = std::find(unit.begin(), unit.end(), rest->back()) != unit.end();
-    if (unit.size() < 2 || unit.size() >= rest->size() || has_base) {
-      continue;
-    }
-    std::stable_sort(unit.begin(), unit.end(), [this](OccurrenceId x, OccurrenceId y) {
-      return extraction_.SizeOf(x) > extraction_.SizeOf(y);
-    });
-    std::optional<SequenceStep> step = extraction_.TryRemove(unit);
-    if (!step) {
-      continue;
-    }
-    PutAside(unit, std::move(*step), rest, removed, sequence);
-    return true;
-  }
-  return false;
-}
-
-void Planner::PutAside(const Unit& unit, SequenceStep step, Unit* rest,
-                       std::vector<SequenceStep>* removed, Sequence* sequence) {
-  std::erase_if(*rest, [&unit](OccurrenceId id) {
-    return std::find(unit.begin(), unit.end(), id) != unit.end();
-  });
-  const Unit others = *rest;
+  SequenceStep step = std::move(out.steps.front());
   extraction_.SetPresent(others, false);
-  extraction_.SetPresent(unit, true);
+  extraction_.SetPresent(out.unit, true);
   const std::size_t first = sequence->steps.size();
-  PlanLevel(unit, sequence);
-  extraction_.SetPresent(unit, false);
+  PlanLevel(out.unit, sequence);
+  extraction_.SetPresent(out.unit, false);
   extraction_.SetPresent(others, true);
   // Only what went into it moves with it, led by its base: the last one that was put in a fixture.
   std::set<OccurrenceId> members;
@@ -162,35 +90,14 @@ void Planner::PutAside(const Unit& unit, SequenceStep step, Unit* rest,
   removed->push_back(std::move(step));
 }
 
-bool Planner::TakeOutBody(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
-                          Sequence* sequence) {
-  while (std::optional<BlockingGraph::Body> body = graph->FindBody(neighbours_)) {
-    Unit unit = body->parts;
-    std::reverse(unit.begin(), unit.end());  // the largest leads
-    std::optional<SequenceStep> step = extraction_.TryRemoveAlong(unit, body->direction);
-    if (step && unit.size() == 1) {
-      std::erase(*rest, unit.front());
-      removed->push_back(std::move(*step));
-      return true;
-    }
-    if (step) {
-      PutAside(unit, std::move(*step), rest, removed, sequence);
-      return true;
-    }
-    graph->Exclude(*body);
-  }
-  return false;
-}
-
-void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
-                        Sequence* sequence) {
+void Planner::GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequence* sequence) {
+  BlockingGraph* const graph = GraphOf(level);
   const OccurrenceId blocker = graph->FindGreatestBlocker();
-  const OccurrenceId id = blocker.is_valid() ? blocker : rest->front();
+  const OccurrenceId id = blocker.is_valid() ? blocker : level->rest.front();
   std::string reason =
       extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
   if (graph->is_limited()) {
-    reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
-                          BlockingGraph::kMostWays);
+    reason += "; the search for parts that come out together was ended";
   }
   sequence->gaps.push_back({id, std::move(reason)});
   SequenceStep assumed;
@@ -198,94 +105,17 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceSt
   assumed.occurrence = id;
   removed->push_back(std::move(assumed));
   extraction_.SetPresent({id}, false);
-  std::erase(*rest, id);
+  std::erase(level->rest, id);
 }
 
-Unit Planner::WithFixtures(const Unit& rest) const {
-  Unit all = rest;
-  all.insert(all.end(), input_.fixtures.begin(), input_.fixtures.end());
-  return all;
-}
-
-Unit Planner::ListConnecting(const Unit& rest) const {
-  return ListCutParts(WithFixtures(rest), neighbours_);
-}
-
-Unit Planner::ListHanging(OccurrenceId id, const Unit& rest) const {
-  Unit others = ListConnected(id, WithFixtures(rest), neighbours_);
-  std::erase(others, id);
-  Unit hanging = others;
-  std::erase_if(hanging, [&rest](OccurrenceId part) {
-    return std::find(rest.begin(), rest.end(), part) == rest.end();
-  });
-  Unit standing = input_.fixtures;
-  if (!hanging.empty()) {
-    standing.push_back(hanging.back());  // the base, where it is among them: the largest
-  }
-  for (const OccurrenceId stands : standing) {
-    for (const OccurrenceId part : ListConnected(stands, others, neighbours_)) {
-      std::erase(hanging, part);
+std::optional<TakenOut> Planner::TakeOut(Level* level) const {
+  level->connecting = ListCutParts(level->WithFixtures(), neighbours_);
+  for (const std::unique_ptr<Strategy>& strategy : strategies_) {
+    if (std::optional<TakenOut> out = strategy->TryTakeOut(level)) {
+      return out;
     }
   }
-  return hanging;
-}
-
-void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
-                          std::vector<SequenceStep>* removed, Sequence* sequence) {
-  // Always the smallest that can go, but none that others hang on: what lies on a part goes before
-  // the part, or with it.
-  const Unit connecting = ListConnecting(*rest);
-  std::optional<SequenceStep> step = extraction_.TryRemoveOne(rest, connecting);
-  if (!step && (TakeOutWithHanging(connecting, rest, removed, sequence) ||
-                TakeOutSubassembly(rest, removed, sequence))) {
-    return;
-  }
-  if (!step) {
-    step = extraction_.TryRemoveOne(rest);
-  }
-  if (step) {
-    removed->push_back(std::move(*step));
-    return;
-  }
-  if (std::optional<SequenceStep> turning = extraction_.TryRemoveRing(rest, connecting)) {
-    removed->push_back(std::move(*turning));
-    return;
-  }
-  if (std::optional<SequenceStep> giving = extraction_.TryRemoveGiving(rest, connecting)) {
-    removed->push_back(std::move(*giving));
-    return;
-  }
-  if (extraction_.AllowBeyondDrawn(*rest)) {
-    graph->reset();
-    return;
-  }
-  if (!*graph) {
-    graph->emplace(&extraction_, *rest);
-  }
-  (*graph)->Keep(*rest);
-  if (TakeOutBody(&**graph, rest, removed, sequence)) {
-    return;
-  }
-  if (std::optional<SequenceStep> turning =
-          extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kBrief)) {
-    removed->push_back(std::move(*turning));
-    return;
-  }
-  if (std::vector<SequenceStep> passing = extraction_.TryRemovePast(rest, connecting);
-      !passing.empty()) {
-    removed->insert(removed->end(), passing.rbegin(), passing.rend());
-    return;
-  }
-  if (std::optional<SequenceStep> turning =
-          extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kLong)) {
-    removed->push_back(std::move(*turning));
-    return;
-  }
-  if (std::optional<SequenceStep> bending = extraction_.TryRemoveBending(rest, connecting)) {
-    removed->push_back(std::move(*bending));
-    return;
-  }
-  GiveUpOne(&**graph, rest, removed, sequence);
+  return std::nullopt;
 }
 
 OccurrenceId Planner::ChooseBase(const Unit& rest) const {
@@ -303,9 +133,14 @@ void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   std::rotate(staying, staying + 1, rest.end());
   extraction_.Forget(rest);
   std::vector<SequenceStep> removed;
-  std::optional<BlockingGraph> graph;
-  while (rest.size() > 1 && !input_.stop.stop_requested()) {
-    TakeOutNext(&graph, &rest, &removed, sequence);
+  Level level{&product_, &extraction_, &neighbours_, &input_.fixtures, std::move(rest), {}, {}};
+  while (level.rest.size() > 1 && !input_.stop.stop_requested()) {
+    std::optional<TakenOut> out = TakeOut(&level);
+    if (!out) {
+      GiveUpOne(&level, &removed, sequence);
+    } else if (!out->unit.empty()) {
+      PutAside(*std::move(out), level.rest, &removed, sequence);
+    }
     if (input_.progress) {
       input_.progress(std::min(
           1.0, static_cast<double>(++planned_) / static_cast<double>(product_.occurrences.size())));
@@ -313,7 +148,7 @@ void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   }
   SequenceStep base;
   base.kind = SequenceStep::Kind::kBase;
-  base.occurrence = rest.front();
+  base.occurrence = level.rest.front();
   sequence->steps.push_back(base);
   sequence->steps.insert(sequence->steps.end(), removed.rbegin(), removed.rend());
 }

@@ -146,8 +146,15 @@ struct Sequence {
                                                              std::span<const GivingPair> gives,
                                                              product::OccurrenceId id);
 
-/** How many looks at a part the search for ways that turn takes at most: half a minute to a minute
- and a half. Of 22 pairs drawn for it, 20 have their way within 60,000, two within 1,900,000. */
+/** How many contact queries the search for an order takes in all of a product: half a minute. A
+ choice, as a person waits; docs/algorithms/sequence.md has what is lost by it. */
+inline constexpr std::uint64_t kSearchQueries = 2'400'000;
+
+/** How many times as many it takes where somebody asks for it: a choice. */
+inline constexpr std::uint64_t kThoroughness = 10;
+
+/** How many looks at a part the search for ways that turn takes at most. Of 22 pairs drawn for it,
+ * 20 have their way within 60,000, two within 1,900,000. */
 inline constexpr std::uint64_t kWayLooks = 2'000'000;
 
 /** Why a part cannot be brought in; empty where no reason is known. */
@@ -171,6 +178,7 @@ struct SequenceInput {
   std::vector<double> give_limits;
   /** How many looks at a part the search for ways that turn may take; 0: none are searched for. */
   std::uint64_t way_looks{kWayLooks};
+  std::uint64_t queries{kSearchQueries};        ///< Limits the search, in all of the product.
   product::OccurrenceId base;                   ///< What stays in the fixture; invalid: found.
   std::vector<product::OccurrenceId> absent;    ///< Tools, and what is not ready: not there.
   std::vector<product::OccurrenceId> fixtures;  ///< They stay where they are.

@@ -374,6 +374,7 @@ Result<void> FindOrder(const CompileOptions& options, Model* model) {
   contact::Scene scene;
   sequence::SequenceInput input = MakeSequenceInput(*model, &scene);
   input.way_looks = options.way_looks;
+  input.queries = options.search_queries;
   const auto base = FindNamedBase(options, *model);
   if (!base) {
     return Unexpected(base.error());

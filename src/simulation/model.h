@@ -83,6 +83,8 @@ struct CompileOptions {
   unsigned threads{0};                               ///< That build shapes; 0: one a core.
   std::uint64_t way_looks{
       sequence::kWayLooks};  ///< Limits the search for ways that turn, for each part.
+  /** Limits the search for the order, in all of the product. */
+  std::uint64_t search_queries{sequence::kSearchQueries};
   std::function<void(const std::string& stage, double fraction)> progress;
   /** Called by the calling thread with a model of the parts that are ready, long before the others
    are; never where that is no gain. All others are pending in it. May be null. */

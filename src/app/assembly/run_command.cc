@@ -59,6 +59,7 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
   prepare.pairs = options.pairs;
   prepare.first_parts = order.first_parts;
   prepare.base = order.base;
+  prepare.is_thorough = order.is_thorough;
   if (!order.plan.empty()) {
     auto steps = ReadPlan(order.plan, *product);
     if (!steps) {
@@ -223,8 +224,11 @@ std::vector<orders::GapReason> ExplainLeftOut(const Model& model, double time_s,
   return reasons;
 }
 
-void AddBaseOption(CLI::App* command, std::string* base) {
-  command->add_option("--base", *base,
+void AddOrderChoice(CLI::App* command, OrderChoice* order) {
+  command->add_flag("--thorough", order->is_thorough,
+                    "Search ten times as long for ways out where parts do not come out straight, "
+                    "minutes instead of half a minute for a product");
+  command->add_option("--base", order->base,
                       "The part that stays in the fixture, by name, path or id (o12); without it, "
                       "the largest part, or the one that most others are joined to");
 }

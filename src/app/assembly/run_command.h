@@ -59,6 +59,7 @@ struct PreparationProgress {
 struct OrderChoice {
   std::vector<std::string> first_parts;  ///< PrepareOptions::first_parts.
   std::string base;                      ///< PrepareOptions::base.
+  bool is_thorough{false};               ///< PrepareOptions::is_thorough.
   std::filesystem::path plan;            ///< A plan of `hvas plan`; empty: none.
 };
 
@@ -86,8 +87,8 @@ int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress
                                               assembly::RunOutcome outcome,
                                               std::int64_t preparation_ns);
 
-/** Adds --base to a command. */
-void AddBaseOption(CLI::App* command, std::string* base);
+/** Adds --base and --thorough to a command. */
+void AddOrderChoice(CLI::App* command, OrderChoice* order);
 
 /** Adds --seed, --fit, --condition, --force-map and --device to a command. */
 void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options);

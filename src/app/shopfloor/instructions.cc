@@ -219,7 +219,7 @@ void AddInstructions(CLI::App* app, int* status) {
                       "A record of the product: the times of its parts stand beside the plan's");
   command->add_option("--plan", options->order.plan,
                       "A plan that hvas plan has written with -o: its order is followed");
-  AddBaseOption(command, &options->order.base);
+  AddOrderChoice(command, &options->order);
   AddOrderOptions(command, options.get());
   AddJsonFlag(command, &options->is_json, "instructions or preparation");
   AddAccessoryOptions(command, &options->load);

@@ -12,6 +12,7 @@
 
 #include "orders/order_search.h"
 #include "paths/test/pairs.h"
+#include "person/simulated_person.h"
 #include "person/test/session.h"
 #include "sequence/step_check.h"
 #include "simulation/disassembly_run.h"
@@ -21,9 +22,9 @@ namespace hvas::assembly {
 namespace {
 
 using Kind = sequence::SequenceStep::Kind;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 
 /** A box along the axes [mm]. */
 struct Box {

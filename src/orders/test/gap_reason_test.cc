@@ -14,10 +14,10 @@
 namespace hvas::orders {
 namespace {
 
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 using ::testing::IsSubstring;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kPeg = 5e-3;  // Radius of the peg [m].

@@ -16,9 +16,9 @@
 namespace hvas::person {
 namespace {
 
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 
 constexpr double kBufferFloor = 5e-3;  // [m]
 const product::testing::Coil kBufferCoil{2e-3, 14e-3, 5, 4e-3, 1};

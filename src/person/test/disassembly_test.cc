@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "person/simulated_person.h"
 #include "person/test/session.h"
 #include "simulation/disassembly_run.h"
 #include "simulation/test/small_models.h"
@@ -11,8 +12,8 @@
 namespace hvas::person {
 namespace {
 
-using testing::OccurrenceId;
-using testing::Product;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Product;
 using Names = std::vector<std::string>;
 using ::testing::IsSubstring;
 

@@ -7,6 +7,7 @@
 
 #include "base/clock_place.h"
 #include "base/loop_clock.h"
+#include "person/simulated_person.h"
 #include "person/test/session.h"
 #include "simulation/test/small_models.h"
 

@@ -17,9 +17,9 @@
 namespace hvas::person {
 namespace {
 
+using sequence::testing::OccurrenceId;
 using testing::kHalf;
 using testing::MovedHands;
-using testing::OccurrenceId;
 
 /** Whoever holds the middle one of three blocks, with the others to its left and right. */
 struct Row {

@@ -13,10 +13,10 @@
 namespace hvas::person {
 namespace {
 
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 using ::testing::IsSubstring;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
 using Answer = sequence::DrawnOverlap::Answer;
 
 /** A part of flat faces. */

@@ -17,10 +17,10 @@
 namespace hvas::person {
 namespace {
 
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 using ::testing::IsSubstring;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
 
 constexpr double kPistonBore = 10e-3;    // Radius [m].
 constexpr double kCylinderFloor = 5e-3;  // [m]

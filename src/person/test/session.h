@@ -7,10 +7,15 @@
 #include <vector>
 
 #include "base/digest.h"
+#include "person/simulated_person.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::person::testing {
+
+using namespace simulation::testing;  // NOLINT(google-build-using-namespace): small products and
+                                      // models.
 
 /** Keeps what a session gave, and its fingerprint. */
 class Watch final : public simulation::Sink {

@@ -318,7 +318,7 @@ TEST(SessionTest, X14WhoMissesWhereNothingStopsThePartLooksAndComesAgain) {  // 
   constexpr std::uint64_t kMissesAtFirst = 5;
   Session session(simulation::testing::PegInBlockModel(), kMissesAtFirst, options, hasty);
   (void)simulation::RunLockstep(session.MakeExecution(kSessionTime));
-  EXPECT_EQ(session.simulation.physics().placement(testing::OccurrenceId(1)),
+  EXPECT_EQ(session.simulation.physics().placement(sequence::testing::OccurrenceId(1)),
             simulation::Placement::kPlaced);
   EXPECT_GT(session.person.searches(), 0);
 }

@@ -30,7 +30,7 @@ simulation::PersonTask MakeTask() {
   return task;
 }
 
-Pose simulation::StartOfHand() {
+Pose StartOfHand() {
   return Pose(Vec3(0, 0, 0.15));
 }
 
@@ -110,7 +110,7 @@ PersonOptions StiffAndSteady() {
 
 /** Samples until the hand closes, without the wait on the part at the end. */
 std::vector<DeviceState> FirstReach(const PersonOptions& options) {
-  SimulatedPerson person(options, 1, simulation::StartOfHand());
+  SimulatedPerson person(options, 1, StartOfHand());
   std::vector<DeviceState> states = Perform(&person, Nothing, 5);
   const auto grip = std::find_if(states.begin(), states.end(),
                                  [](const DeviceState& state) { return state.is_gripping; });
@@ -120,7 +120,7 @@ std::vector<DeviceState> FirstReach(const PersonOptions& options) {
 
 TEST(SimulatedPersonTest, ReachIsAMinimumJerkMovement) {  // Flash and Hogan 1985, eq. (1)
   const std::vector<DeviceState> states = FirstReach(StiffAndSteady());
-  const Vec3 from = simulation::StartOfHand().p();
+  const Vec3 from = StartOfHand().p();
   const Vec3 to = MakeTask().X_WG_start.p();
   const double duration = (to - from).norm() / (1.5 * PersonOptions().carry_speed);
   const int n = static_cast<int>(std::lround(duration / kTick));
@@ -148,7 +148,7 @@ TEST(SimulatedPersonTest, ReachIsAMinimumJerkMovement) {  // Flash and Hogan 198
 TEST(SimulatedPersonTest, HumanArmStillMovesInABellOfSpeed) {
   // With the arm's own mass and stiffness the hand lags, but the speed keeps the shape.
   const std::vector<DeviceState> states = FirstReach({});
-  const double way = (MakeTask().X_WG_start.p() - simulation::StartOfHand().p()).norm();
+  const double way = (MakeTask().X_WG_start.p() - StartOfHand().p()).norm();
   const double duration = way / (1.5 * PersonOptions().carry_speed);
   double peak = 0;
   std::size_t at = 0;
@@ -165,7 +165,7 @@ TEST(SimulatedPersonTest, HumanArmStillMovesInABellOfSpeed) {
 }
 
 TEST(SimulatedPersonTest, BringsThePartToItsPlaceAndLetsGo) {
-  SimulatedPerson person({}, 5, simulation::StartOfHand());
+  SimulatedPerson person({}, 5, StartOfHand());
   const std::vector<DeviceState> states = Perform(&person, OpenPlace, 30);
   EXPECT_EQ(person.finished_count(), 1);
   EXPECT_FALSE(person.gave_up());
@@ -186,7 +186,7 @@ TEST(SimulatedPersonTest, BringsThePartToItsPlaceAndLetsGo) {
 TEST(SimulatedPersonTest, EqualSeedsMoveAlikeAndOthersDoNot) {
   std::vector<std::string> hashes;
   for (const std::uint64_t seed : {7, 7, 8}) {
-    SimulatedPerson person({}, seed, simulation::StartOfHand());
+    SimulatedPerson person({}, seed, StartOfHand());
     hashes.push_back(Hash(Perform(&person, Wall(10e-3), 15)));
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -201,7 +201,7 @@ TEST(SimulatedPersonTest, AimsWithTheErrorOfItsOptions) {
   double squares = 0;
   constexpr int kPeople = 200;
   for (int seed = 0; seed < kPeople; ++seed) {
-    SimulatedPerson person(options, static_cast<std::uint64_t>(seed), simulation::StartOfHand());
+    SimulatedPerson person(options, static_cast<std::uint64_t>(seed), StartOfHand());
     Vec3 p = Vec3::Zero();
     (void)Perform(
         &person,
@@ -229,7 +229,7 @@ TEST(SimulatedPersonTest, AimsWithTheErrorOfItsOptions) {
 
 TEST(SimulatedPersonTest, PressesHarderWhenStuckButNotBeyondItsLimit) {
   const PersonOptions options;
-  SimulatedPerson person(options, 3, simulation::StartOfHand());
+  SimulatedPerson person(options, 3, StartOfHand());
   double peak = 0;
   std::vector<double> forces;
   const World wall = Wall(15e-3);
@@ -264,7 +264,7 @@ TEST(SimulatedPersonTest, PressesHarderWhenStuckButNotBeyondItsLimit) {
 TEST(SimulatedPersonTest, SearchesThenGivesUpOnAWallAndBringsThePartBack) {
   PersonOptions options;
   options.patience_s = 8;
-  SimulatedPerson person(options, 11, simulation::StartOfHand());
+  SimulatedPerson person(options, 11, StartOfHand());
   double time_at_wall = 0;
   const World wall = Wall(15e-3);
   const std::vector<DeviceState> states = Perform(
@@ -297,7 +297,7 @@ TEST(SimulatedPersonTest, SearchFindsAHoleBesideItsAim) {
   int found = 0;
   int searched = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    SimulatedPerson person({}, seed, simulation::StartOfHand());
+    SimulatedPerson person({}, seed, StartOfHand());
     bool is_in_hole = false;
     (void)Perform(
         &person,
@@ -318,7 +318,7 @@ TEST(SimulatedPersonTest, SearchFindsAHoleBesideItsAim) {
 TEST(SimulatedPersonTest, HoldsUpAWeightItHasLearned) {
   // With 5 N more in the hand it does not sink by F/k = 12.5 mm where the carry ends.
   const auto highest_over_place = [](double weight) {
-    SimulatedPerson person({}, 2, simulation::StartOfHand());
+    SimulatedPerson person({}, 2, StartOfHand());
     const std::vector<DeviceState> states = Perform(
         &person,
         [weight](const DeviceState& state) {
@@ -340,7 +340,7 @@ TEST(SimulatedPersonTest, HoldsUpAWeightItHasLearned) {
 
 TEST(SimulatedPersonTest, AnyForceThatADeviceCanGiveLeavesTheHandFiniteAndNear) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    SimulatedPerson person({}, seed, simulation::StartOfHand());
+    SimulatedPerson person({}, seed, StartOfHand());
     Random random(100 + seed);
     const std::vector<DeviceState> states = Perform(
         &person,
@@ -362,17 +362,17 @@ TEST(SimulatedPersonTest, AnyForceThatADeviceCanGiveLeavesTheHandFiniteAndNear) 
 }
 
 TEST(SimulatedPersonTest, WithoutATaskTheHandStaysOpenWhereItIs) {
-  SimulatedPerson person({}, 1, simulation::StartOfHand());
+  SimulatedPerson person({}, 1, StartOfHand());
   for (int i = 0; i < 3000; ++i) {
     const DeviceState state = person.Step({});
     ASSERT_FALSE(state.is_gripping);
-    ASSERT_LT((state.X_DH.p() - simulation::StartOfHand().p()).norm(), 1e-3);  // tremor
+    ASSERT_LT((state.X_DH.p() - StartOfHand().p()).norm(), 1e-3);  // tremor
   }
   EXPECT_EQ(person.finished_count(), 0);
 }
 
 TEST(SimulatedPersonTest, TakesNoMoreTasksThanItCanRemember) {
-  SimulatedPerson person({}, 1, simulation::StartOfHand());
+  SimulatedPerson person({}, 1, StartOfHand());
   int taken = 0;
   for (int i = 0; i < 100; ++i) {
     taken += person.Assign(MakeTask()) ? 1 : 0;

@@ -21,10 +21,10 @@ namespace {
 using contact::testing::CylinderZ;
 using contact::testing::Lathe;
 using contact::testing::PlaneAt;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 using ::testing::IsSubstring;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
 
 constexpr double kShaftRadius = 10e-3;  // [m]
 constexpr double kChamfer = 1.5e-3;     // [m] along the axis, half of it across.

@@ -14,10 +14,10 @@
 namespace hvas::person {
 namespace {
 
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
 using simulation::testing::PegInCarrierInCupModel;
 using testing::CarryOver;
-using testing::OccurrenceId;
-using testing::Pose;
 using testing::WaypointHand;
 
 constexpr std::size_t kCup = 0;

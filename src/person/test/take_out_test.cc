@@ -11,8 +11,8 @@
 namespace hvas::person {
 namespace {
 
-using testing::OccurrenceId;
-using testing::Pose;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
 
 constexpr std::size_t kTakenPeg = 1;
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "person/test/session.h"
+#include "sequence/mate_faces.h"
 #include "sequence/thread_faces.h"
 #include "simulation/test/small_models.h"
 

@@ -16,9 +16,9 @@ namespace hvas::person {
 namespace {
 
 using paths::testing::CellSolid;
-using testing::OccurrenceId;
-using testing::Pose;
-using testing::Product;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
+using sequence::testing::Product;
 
 /** A key whose bit lies across the slot of a plate, below it: it has to turn by a quarter. */
 Product KeyInPlate() {

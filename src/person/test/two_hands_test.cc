@@ -24,8 +24,8 @@ namespace hvas::person {
 namespace {
 
 using device::DeviceState;
-using testing::OccurrenceId;
-using testing::Pose;
+using sequence::testing::OccurrenceId;
+using sequence::testing::Pose;
 using testing::Watch;
 
 static_assert(

@@ -40,7 +40,7 @@ Product PlateOnPlate(const Pose& X_WP, double scale) {
   return product;
 }
 
-/** The block and the peg of testing::PegInBlock, with all lengths multiplied. */
+/** The block and the peg of sequence::testing::PegInBlock, with all lengths multiplied. */
 Product ScaledPegInBlock(const Pose& X_WP, double scale) {
   Product product;
   product.name = "rig";

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sequence/extraction.h"
+#include "sequence/mate_faces.h"
 #include "sequence/test/small_products.h"
 
 namespace hvas::sequence {

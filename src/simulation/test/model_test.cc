@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sequence/extraction.h"
+#include "sequence/mate_faces.h"
 #include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
@@ -198,9 +199,9 @@ TEST(ModelSequenceTest, AWayThatEndsBehindAPartFarAwayTakesNoMoreThanFiveThousan
   product.name = "far";
   const auto block = testing::AddPart(&product, "block", contact::testing::Block({0.1, 0.1, 0.1}));
   testing::Place(&product, block, "here");
-  testing::Place(&product, block, "there", Pose(Vec3(1e7, 0, 0)));
+  testing::Place(&product, block, "there", spatial::Pose(Vec3(1e7, 0, 0)));
   testing::Complete(&product);
-  const auto model = simulation::testing::CompileFast(std::move(product));
+  const auto model = testing::CompileFast(std::move(product));
   contact::Scene scene;
   const sequence::SequenceInput input = MakeSequenceInput(*model, &scene);
   sequence::Extraction extraction(input, &model->sequence);

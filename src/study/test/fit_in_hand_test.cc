@@ -143,7 +143,7 @@ Loop CalcLoop(const std::vector<Moment>& moments, double felt_weight) {
 
 /** Largest true force against coming out while the part has not slipped by more than the bristles
  give, after a rest [N]. */
-double simulation::CalcBreakaway(const std::vector<Moment>& moments, const Rest& rest) {
+double CalcBreakaway(const std::vector<Moment>& moments, const Rest& rest) {
   double largest = 0;
   for (std::size_t i = rest.begin; i < moments.size(); ++i) {
     largest = std::max(largest, -moments[i].out.axial_true);
@@ -221,7 +221,7 @@ TEST(FitInHand, BreakawayIsTheClosedForm) {
     EXPECT_NEAR(depth, kLength - turn_back, 2e-3);
     const double closed =
         0.15 * std::numbers::pi * 210e9 * (1 - 0.25) * 10.75e-6 * depth;  // H7/p6 in mid zone
-    EXPECT_NEAR(simulation::CalcBreakaway(moments, rest), closed, 0.02 * closed);
+    EXPECT_NEAR(CalcBreakaway(moments, rest), closed, 0.02 * closed);
   }
 }
 
@@ -233,7 +233,7 @@ TEST(FitInHand, BreakawayOfATransitionFitAndOfAPairThatSlips) {
   const Rest rest = FindRest(moments);
   const double expected = rough->CalcReleaseForce(moments[rest.end].out.insertion_depth);
   ASSERT_GT(expected, 100);
-  EXPECT_NEAR(simulation::CalcBreakaway(moments, rest), expected, 0.02 * expected);
+  EXPECT_NEAR(CalcBreakaway(moments, rest), expected, 0.02 * expected);
 
   fits::FitForceParameters p;
   p.nominal_diameter = p.hole_diameter = 0.04;
@@ -246,7 +246,7 @@ TEST(FitInHand, BreakawayOfATransitionFitAndOfAPairThatSlips) {
   const Rest still = FindRest(loose);
   const double depth = loose[still.end].out.insertion_depth;
   const double normal = slippery->CalcNormalForce(depth);
-  EXPECT_NEAR(simulation::CalcBreakaway(loose, still), 0.2 * normal, 0.02 * 0.2 * normal);
+  EXPECT_NEAR(CalcBreakaway(loose, still), 0.2 * normal, 0.02 * 0.2 * normal);
   // In with 0.12, out with 0.1 of it while it slides.
   int in = 0;
   int out = 0;
