@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,8 +17,9 @@ struct MetricThread {
   double diameter_mm, pitch_mm, tap_drill_mm, fine_mm, medium_mm, coarse_mm;
 };
 
-struct FineThread {
-  double diameter_mm, pitch_mm;
+struct FineThreads {
+  double diameter_mm;
+  double pitches_mm[5];
 };
 
 struct InchThread {
@@ -35,21 +37,27 @@ std::vector<Thread> MakeThreads() {
   for (const MetricThread& row : kCoarseThreads) {
     threads.push_back({fmt::format("M{:g}", row.diameter_mm), FromMm(row.diameter_mm),
                        FromMm(row.pitch_mm), FromMm(row.tap_drill_mm), FromMm(row.fine_mm),
-                       FromMm(row.medium_mm), FromMm(row.coarse_mm)});
+                       FromMm(row.medium_mm), FromMm(row.coarse_mm), true});
   }
-  for (const FineThread& row : kFineThreads) {
+  for (const FineThreads& row : kFineThreads) {
     const auto coarse =
         std::find_if(std::begin(kCoarseThreads), std::end(kCoarseThreads),
                      [&row](const MetricThread& c) { return c.diameter_mm == row.diameter_mm; });
-    threads.push_back({fmt::format("M{:g}x{:g}", row.diameter_mm, row.pitch_mm),
-                       FromMm(row.diameter_mm), FromMm(row.pitch_mm),
-                       FromMm(row.diameter_mm - row.pitch_mm), FromMm(coarse->fine_mm),
-                       FromMm(coarse->medium_mm), FromMm(coarse->coarse_mm)});
+    const MetricThread holes = coarse != std::end(kCoarseThreads) ? *coarse : MetricThread{};
+    for (const double pitch_mm : row.pitches_mm) {
+      if (pitch_mm > 0) {
+        threads.push_back({fmt::format("M{:g}x{:g}", row.diameter_mm, pitch_mm),
+                           FromMm(row.diameter_mm), FromMm(pitch_mm),
+                           FromMm(row.diameter_mm - pitch_mm), FromMm(holes.fine_mm),
+                           FromMm(holes.medium_mm), FromMm(holes.coarse_mm), false});
+      }
+    }
   }
   for (const InchThread& row : kInchThreads) {
     threads.push_back({row.designation, FromMm(row.diameter_mm),
                        units::kMetresPerInch / row.threads_per_inch, FromMm(row.tap_drill_mm),
-                       FromMm(row.fine_mm), FromMm(row.medium_mm), FromMm(row.coarse_mm)});
+                       FromMm(row.fine_mm), FromMm(row.medium_mm), FromMm(row.coarse_mm),
+                       std::string_view(row.designation).ends_with("UNC")});
   }
   return threads;
 }
@@ -66,16 +74,51 @@ std::span<const Thread> ListThreads() {
   return threads;
 }
 
+namespace {
+
+/** How far a drawn hole is from the diameters at which holes of a thread are drawn, the nearest
+ counting: D1, the drill that leaves a pitch, the tap drill, and d3. */
+double CalcHoleError(const Thread& thread, double hole) {
+  double error = std::abs(hole - thread.minor_diameter());
+  for (const double drawn :
+       {thread.diameter - thread.pitch, thread.tap_drill, thread.core_diameter()}) {
+    error = std::min(error, std::abs(hole - drawn));
+  }
+  return error;
+}
+
+}  // namespace
+
+const Thread* FindThreadOfPair(double hole, double shaft) {
+  // Choices: drawings round to hundredths, and holes of larger threads to tenths.
+  constexpr double kRounding = 20e-6;    // [m]
+  constexpr double kOfThePitch = 0.015;  // Beside it.
+  const Thread* best = nullptr;
+  double least = 0;
+  for (const Thread& thread : ListThreads()) {
+    const double most = kRounding + kOfThePitch * thread.pitch;
+    const double of_shaft = std::abs(shaft - thread.diameter);
+    const double of_hole = CalcHoleError(thread, hole);
+    if (of_shaft > most || of_hole > most) {
+      continue;
+    }
+    if (best == nullptr || of_shaft + of_hole < least - 1e-9) {
+      best = &thread;
+      least = of_shaft + of_hole;
+    }
+  }
+  return best;
+}
+
 const Thread* FindThread(double diameter, double pitch) {
   constexpr double kNear = 0.02;  // Of the diameter: screws are drawn below it by their tolerance.
   const Thread* best = nullptr;
   double least = 0;
   for (const Thread& thread : ListThreads()) {
     const double off = std::abs(diameter - thread.diameter) / thread.diameter;
-    if (off > kNear) {
+    if (off > kNear || (pitch <= 0 && !thread.is_coarse)) {
       continue;
     }
-    // Of the same size the coarse one comes first in the list, and stays where no pitch is known.
     const double score = pitch > 0 ? std::abs(pitch - thread.pitch) / thread.pitch + off : off;
     if (best == nullptr || score < least - 1e-9) {
       best = &thread;

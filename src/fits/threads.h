@@ -15,6 +15,7 @@ struct Thread {
   double clearance_fine{0};  ///< ISO 273, ASME B18.2.8; 0: none is given.
   double clearance_medium{0};
   double clearance_coarse{0};
+  bool is_coarse{false};  ///< The coarse one of its size: coarse pitches of ISO 261, UNC.
 
   /** d2 = d - 0.649519 P (ISO 724). */
   [[nodiscard]] double pitch_diameter() const { return diameter - 0.649519 * pitch; }
@@ -29,14 +30,22 @@ struct Thread {
   [[nodiscard]] double stress_area() const;
 };
 
-/** All threads: M1.6 to M64 coarse and fine, unified #4 to 1 in coarse and fine. */
+/** All threads: those of ISO 261, M1 to M68 coarse and M1 to M300 fine, and unified ones of #0 to
+ 1 1/2 in, coarse and fine. */
 [[nodiscard]] std::span<const Thread> ListThreads();
 
 /** The thread whose diameter lies within a fiftieth of a drawn one, and whose pitch is nearest to
- `pitch`, or the coarse one where `pitch` is 0; a metric one before a unified one that is as near.
+ `pitch`, or the coarse one where `pitch` is 0 (none where the size has only fine ones); a metric one before a unified one that is as near.
  Null where there is none.
  @param diameter,pitch [m] */
 [[nodiscard]] const Thread* FindThread(double diameter, double pitch);
+
+/** The thread that a hole and a shaft are by their diameters: the shaft at its outer diameter, the
+ hole at D1 (ISO 724), at the drill that leaves a pitch (d - P), at the tap drill (ISO 2306), or at
+ the root of the screw, d3 (DIN 13-1); each within 20 um and 1.5 % of the pitch. The two diameters
+ decide the pitch, so no name is needed. Of several the nearest; null where there is none.
+ @param hole,shaft Drawn diameters [m]. */
+[[nodiscard]] const Thread* FindThreadOfPair(double hole, double shaft);
 
 /** What a hole is for a screw of a thread, by the diameter at which it is drawn. */
 enum class ThreadHole {

@@ -110,8 +110,12 @@ bool AxisRules::HasPartBetween(const PlacedAxisHit& hit) const {
 
 /** True for a wide hole around a shaft which another part guides on the same axis. */
 bool AxisRules::IsLoosePassage(const PlacedAxisHit& hit) const {
+  // Clearance holes of ISO 273, coarse, have up to 0.2 of the screw's radius from M3 on, less a
+  // rounding of some standard's own.
+  constexpr double kClearanceHole = 0.21;
   const auto is_loose = [this](const PlacedAxisHit& h) {
-    return h.play() > limits_.radius_difference * h.scale;
+    return h.play() > limits_.radius_difference * h.scale &&
+           !(h.is_screw && h.play() <= kClearanceHole * h.shaft_radius);
   };
   if (!is_loose(hit)) {
     return false;

@@ -11,7 +11,8 @@
 
 namespace hvas::mates {
 
-/** A hole of one occurrence and a shaft of another that engage, as drawn. */
+/** A hole of one occurrence and a shaft of another that engage, as drawn: on one axis, or a screw in
+ a hole whose axis it misses by less than its play. */
 struct PlacedAxisHit {
   product::OccurrenceId hole_occurrence;
   product::OccurrenceId shaft_occurrence;
@@ -24,6 +25,8 @@ struct PlacedAxisHit {
   double low{0};  ///< Engaged interval along the axis from the origin [m].
   double high{0};
   double scale{1};  ///< Scale of lengths, for this pair of parts.
+  bool is_off_axis{false};
+  bool is_screw{false};  ///< The shaft is one that is screwed in somewhere.
 
   [[nodiscard]] double length() const { return high - low; }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mates/fasteners.h"
+#include "mates/judge.h"
 #include "mates/resolve.h"
 
 namespace hvas::mates {
@@ -20,18 +21,30 @@ using product::OccurrenceId;
 using product::Product;
 
 constexpr double kParallelAxes = 2e-3;  // [rad]: a tenth of a degree, as in mates.md, section 1.
-constexpr double kOneAxis = 20e-6;      // [m]: the limit of axis-hole mates there.
+constexpr double kOneAxis = 20e-6;      // [m]: of two shafts of one fastener, as there.
 constexpr double kCircle = 0.1e-3;      // [m]: by which holes of a drawn circle are off. A choice.
 
 using PartPair = std::pair<OccurrenceId, OccurrenceId>;
 
-/** A hole that a fastener is in. */
+/** A hole that a fastener is in, placed on the fastener's axis: the holes may be off it. */
 struct Hole {
   OccurrenceId part;
   const Mate* mate;
   Vec3 p_W, axis_W;
-  double at{0};  // Middle of the hole along the axis of the first one [m].
+  double offset{0};  // How far the hole's axis is off [m].
+  double at{0};      // Middle of the hole along the axis of the first one [m].
 };
+
+Hole MakeHole(const Product& product, const Mate& mate) {
+  const product::Connector& shaft = mate.b;
+  const product::Feature& feature =
+      product.part_of(shaft.occurrence).features[shaft.feature.index()];
+  const Pose& X_WB = product.occurrences[shaft.occurrence.index()].X_WB;
+  const Vec3 p_B = feature.origin_B +
+                   feature.axis_B.dot(shaft.X_BM.p() - feature.origin_B) * feature.axis_B;
+  return {mate.a.occurrence, &mate, X_WB * p_B, X_WB.q() * feature.axis_B,
+          CalcOffset(product, mate), 0};
+}
 
 Pose PlaceHole(const Product& product, const Mate& mate) {
   return product.occurrences[mate.a.occurrence.index()].X_WB * mate.a.X_BM;
@@ -44,6 +57,7 @@ struct Group {
   std::vector<OccurrenceId> fasteners;
   std::vector<Vec3> points_W;
   double diameter{0};
+  double offset{0};
 };
 
 void Add(const Hole& low, const Hole& high, std::map<PartPair, std::vector<Group>>* groups) {
@@ -53,12 +67,13 @@ void Add(const Hole& low, const Hole& high, std::map<PartPair, std::vector<Group
     return g.axis_W.cross(low.axis_W).norm() < kParallelAxes;
   });
   if (group == of_pair.end()) {
-    of_pair.push_back({a, b, low.axis_W, {}, {}, 0});
+    of_pair.push_back({a, b, low.axis_W, {}, {}, 0, 0});
     group = std::prev(of_pair.end());
   }
   group->fasteners.push_back(low.mate->b.occurrence);
   group->points_W.push_back(low.p_W);
   group->diameter = std::max(group->diameter, 2 * low.mate->shaft_radius);
+  group->offset = std::max({group->offset, low.offset, high.offset});
 }
 
 /** Takes the holes that one fastener is in by axes, and joins those that follow each other. */
@@ -123,6 +138,7 @@ FastenedJoint MakeJoint(const Product& product, const Group& group) {
   fastened.b = group.b;
   fastened.fasteners = group.fasteners;
   fastened.diameter = group.diameter;
+  fastened.offset = group.offset;
   const Joint* const joint = FindJoint(product, group.a, group.b);
   fastened.pilot = FindPilot(product, joint, group);
   Vec3 centre_W = Vec3::Zero();
@@ -159,9 +175,7 @@ std::vector<FastenedJoint> FindFastenedJoints(const Product& product) {
   for (const Mate& mate : product.mates) {
     if (mate.kind == MateKind::kAxisHole &&
         kinds[mate.a.occurrence.index()] != FastenerKind::kNut) {
-      const Pose X_WM = PlaceHole(product, mate);
-      holes_of[mate.b.occurrence].push_back(
-          {mate.a.occurrence, &mate, X_WM.p(), X_WM.q() * Vec3::UnitZ(), 0});
+      holes_of[mate.b.occurrence].push_back(MakeHole(product, mate));
     }
   }
   std::map<PartPair, std::vector<Group>> groups;

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "product/axis_features.h"
 #include "product/flexible.h"
+#include "product/words.h"
 
 namespace hvas::mates {
 namespace {
@@ -25,41 +28,82 @@ constexpr double kSameAngle = 2e-3;     // [rad]: what exports err by. A choice.
 constexpr double kSameDistance = 0.01;  // Part of the distance.
 
 /** A flat beside an axis. */
-struct Flat {
+struct HexagonFlat {
   double distance{0};  // Of its plane from the axis [m].
   double angle{0};     // Of its normal about the axis, modulo 60 degrees [rad].
   bool is_outward{true};
+  const Feature* plane{nullptr};
 };
 
-/** True where the flats hold six of one hexagon around the axis. */
-bool HasHexagon(const Part& part, const Feature& axis) {
+/** Extent of faces along an axis, from its origin. */
+std::pair<double, double> CalcExtent(const Part& part, const std::vector<product::FaceId>& faces,
+                                     const Feature& axis) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const product::FaceId id : faces) {
+    const product::Face& face = part.faces[id.index()];
+    for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
+      for (const std::uint32_t v : part.mesh.triangles[face.first_triangle + t]) {
+        const double at = axis.axis_B.dot(part.mesh.vertices[v] - axis.origin_B);
+        low = std::min(low, at);
+        high = std::max(high, at);
+      }
+    }
+  }
+  return {low, high};
+}
+
+/** Whether a flat goes all along a part: that of a bore, which no screw has. */
+bool GoesThrough(const Part& part, const Feature& plane, const Feature& axis) {
+  constexpr double kAllAlong = 0.9;  // Of the part: mouths are chamfered. A choice.
+  const auto [low, high] = CalcExtent(part, plane.faces, axis);
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (const Vec3& vertex : part.mesh.vertices) {
+    const double at = axis.axis_B.dot(vertex - axis.origin_B);
+    first = std::min(first, at);
+    last = std::max(last, at);
+  }
+  return high - low > kAllAlong * (last - first);
+}
+
+/** What flats around an axis are. */
+struct HexagonsAround {
+  bool is_outside{false};  // A head, a nut.
+  bool is_socket{false};   // Inside, and ends in the part.
+};
+
+HexagonsAround FindHexagons(const Part& part, const Feature& axis) {
   const Mat3 R = spatial::FrameFromZ(axis.axis_B).toRotationMatrix();
-  std::vector<Flat> flats;
+  std::vector<HexagonFlat> flats;
   for (const Feature& plane : part.features) {
     if (plane.kind != FeatureKind::kPlane || std::abs(plane.axis_B.dot(axis.axis_B)) > kSameAngle) {
       continue;
     }
     const double distance = plane.axis_B.dot(plane.origin_B - axis.origin_B);
     const Vec3 n = R.transpose() * plane.axis_B;
-    flats.push_back({std::abs(distance), std::atan2(n.y(), n.x()), distance > 0});
+    flats.push_back({std::abs(distance), std::atan2(n.y(), n.x()), distance > 0, &plane});
   }
   constexpr double kSixth = std::numbers::pi / 3;  // [rad] of a hexagon's corner.
-  for (const Flat& first : flats) {
-    unsigned found = 0;
-    for (const Flat& flat : flats) {
+  HexagonsAround found;
+  for (const HexagonFlat& first : flats) {
+    unsigned corners = 0;
+    for (const HexagonFlat& flat : flats) {
       const double turn = (flat.angle - first.angle) / kSixth;
       const double nearest = std::round(turn);
       if (flat.is_outward == first.is_outward && first.distance > 0 &&
           std::abs(flat.distance - first.distance) < kSameDistance * first.distance &&
           std::abs(turn - nearest) * kSixth < kSameAngle) {
-        found |= 1U << (static_cast<unsigned>(static_cast<int>(nearest) + 12) % 6U);
+        corners |= 1U << (static_cast<unsigned>(static_cast<int>(nearest) + 12) % 6U);
       }
     }
-    if (found == 0x3FU) {
-      return true;
+    if (corners == 0x3FU) {
+      found.is_outside = found.is_outside || first.is_outward;
+      found.is_socket =
+          found.is_socket || (!first.is_outward && !GoesThrough(part, *first.plane, axis));
     }
   }
-  return false;
+  return found;
 }
 
 bool IsOnAxis(const Feature& a, const Feature& b) {
@@ -114,6 +158,15 @@ bool IsRivet(const Product& product, OccurrenceId id) {
   return is_rivet(product.part_of(id).name) || is_rivet(product.occurrences[id.index()].name);
 }
 
+/** What is pressed in and holds by its fit, by its name. */
+bool IsBearing(const Product& product, OccurrenceId id) {
+  static constexpr std::array<std::string_view, 12> kWords{
+      "bearing", "ball bearing", "lager",  "kugellager", "waelzlager", "gleitlager",
+      "bushing", "roulement",    "palier", "cuscinetto", "rodamiento", "rolamento"};
+  return product::HasOneOf(product::FoldName(product.part_of(id).name), kWords) ||
+         product::HasOneOf(product::FoldName(product.occurrences[id.index()].name), kWords);
+}
+
 bool IsFlexible(const Product& product, OccurrenceId id) {
   const auto is_bent = [](std::string_view name) {
     const auto kind = product::FindFlexibleKind(name);
@@ -139,19 +192,26 @@ FastenerKind ClassifyShape(const Part& part) {
   const Feature* hole = nullptr;
   const Feature* shaft = nullptr;
   for (const Feature& feature : part.features) {
+    if (feature.kind == FeatureKind::kHole && feature.thread != product::ThreadKind::kNone &&
+        FindHexagons(part, feature).is_outside) {
+      return FastenerKind::kNut;
+    }
     const Feature*& best = feature.kind == FeatureKind::kShaft ? shaft : hole;
     if (product::IsCylinder(feature.kind) && (best == nullptr || feature.area > best->area)) {
       best = &feature;
     }
   }
-  if (shaft != nullptr && HasHexagon(part, *shaft)) {
-    // A shaft only, or beside a socket: in a nut with a flange the hole goes all the way through.
-    const bool is_through = hole != nullptr && IsOnAxis(*shaft, *hole) &&
-                            hole->span_high - hole->span_low > shaft->span_high - shaft->span_low;
-    return is_through ? FastenerKind::kNut : FastenerKind::kScrew;
+  if (shaft == nullptr) {
+    return FastenerKind::kNone;
   }
-  return shaft == nullptr && hole != nullptr && HasHexagon(part, *hole) ? FastenerKind::kNut
-                                                                        : FastenerKind::kNone;
+  const HexagonsAround hexagons = FindHexagons(part, *shaft);
+  if (!hexagons.is_outside && !hexagons.is_socket) {
+    return FastenerKind::kNone;
+  }
+  // Where a hole goes all the way through it is none: a nut with a flange, or a hub.
+  const bool is_through = hole != nullptr && IsOnAxis(*shaft, *hole) &&
+                          hole->span_high - hole->span_low > shaft->span_high - shaft->span_low;
+  return is_through ? FastenerKind::kNone : FastenerKind::kScrew;
 }
 
 std::vector<FastenerKind> ClassifyOccurrences(const Product& product) {
@@ -193,7 +253,10 @@ FitEvidence MakeFitEvidence(const Product& product, const product::Mate& mate,
   evidence.is_rivet = IsRivet(product, mate.b.occurrence);
   evidence.hole_thread = thread_of(mate.a);
   evidence.shaft_thread = thread_of(mate.b);
-  evidence.shaft_is_pin = product::IsPinName(product.part_of(mate.b.occurrence).name);
+  evidence.is_pressed = product::IsPinName(product.part_of(mate.b.occurrence).name) ||
+                        IsBearing(product, mate.a.occurrence) ||
+                        IsBearing(product, mate.b.occurrence);
+  evidence.engaged = mate.overlap;
   return evidence;
 }
 

@@ -7,10 +7,10 @@
 
 namespace hvas::mates {
 
-/** Recognises it by its shape: six equal flats at 60 degrees around a cylinder. Around a hole: a
- nut, where no shaft of the part is on that axis. Around a shaft, outside it (a hexagon head) or as
- a socket: a screw.
- */
+/** Recognises it by its shape. A nut has a thread in its bore (`MarkThreads`) and is a hexagon
+ outside; a part with a hexagonal pocket, such as a holder for a nut, is none. A screw has a hexagon
+ around a shaft, outside (its head) or as a socket that ends in it; a bore with six flats all along
+ is a hub's. */
 [[nodiscard]] FastenerKind ClassifyShape(const product::Part& part);
 
 /** What each occurrence is, in their order: by the part's name, the occurrence's, or, where those

@@ -5,11 +5,16 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "fits/threads.h"
 #include "mates/axis_rules.h"
 #include "mates/build_mate.h"
 #include "mates/drawn_oddities.h"
@@ -65,6 +70,7 @@ class Inference {
 
   std::vector<DrawnOddity> Run() {
     FindPairs();
+    KeepScrewsOffAxis();
     product_->mates.clear();
     product_->alignments.clear();
     const AxisRules rules(limits_, axis_hits_, watch_);
@@ -148,7 +154,52 @@ class Inference {
     placed.low = hit.low;
     placed.high = hit.high;
     placed.scale = ScaleOf(pair);
+    placed.is_off_axis = hit.is_off_axis;
+    placed.is_screw = fasteners_[placed.shaft_occurrence.index()] == FastenerKind::kScrew;
     return placed;
+  }
+
+  /** Whether a shaft is screwed in where it is on its hole's axis. */
+  [[nodiscard]] bool IsThread(const PlacedAxisHit& hit) const {
+    const Feature& hole = FeatureOf(hit.hole_occurrence, hit.hole);
+    return !hit.is_off_axis && (fasteners_[hit.hole_occurrence.index()] == FastenerKind::kNut ||
+                                hole.thread != product::ThreadKind::kNone ||
+                                fits::FindThreadOfPair(2 * hit.hole_radius, 2 * hit.shaft_radius));
+  }
+
+  /** Of what is off the axis of its hole keeps the screws, and what is screwed in elsewhere, in the
+   holes of parts that they do not centre in: other shafts are in wide holes by chance. */
+  void KeepScrewsOffAxis() {
+    using Shaft = std::pair<OccurrenceId, FeatureId>;
+    std::set<Shaft> screws;
+    std::set<std::pair<Shaft, OccurrenceId>> centred;
+    for (const PlacedAxisHit& hit : axis_hits_) {
+      const Shaft shaft(hit.shaft_occurrence, hit.shaft);
+      if (hit.is_screw || IsThread(hit)) {
+        screws.insert(shaft);
+      }
+      if (!hit.is_off_axis) {
+        centred.insert({shaft, hit.hole_occurrence});
+      }
+    }
+    const auto is_chance = [&](const PlacedAxisHit& hit) {
+      const Shaft shaft(hit.shaft_occurrence, hit.shaft);
+      return hit.is_off_axis && (screws.count(shaft) == 0 ||
+                                 centred.count({shaft, hit.hole_occurrence}) > 0);
+    };
+    std::vector<PlacedAxisHit> kept;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const std::size_t end = i + 1 < pairs_.size() ? pairs_[i + 1].first_axis : axis_hits_.size();
+      const std::size_t first = kept.size();
+      for (std::size_t k = pairs_[i].first_axis; k < end; ++k) {
+        if (!is_chance(axis_hits_[k])) {
+          kept.push_back(axis_hits_[k]);
+          kept.back().is_screw |= screws.count({kept.back().shaft_occurrence, kept.back().shaft}) > 0;
+        }
+      }
+      pairs_[i].first_axis = first;
+    }
+    axis_hits_ = std::move(kept);
   }
 
   [[nodiscard]] MateSide SideOf(OccurrenceId id, FeatureId feature) const {
@@ -306,6 +357,10 @@ class Inference {
             nuts[mate.b.occurrence.index()] - (evidence.hole_part == FastenerKind::kNut ? 1 : 0);
         evidence.nut_on_shaft = evidence.shaft_part == FastenerKind::kScrew && others > 0;
         mate.fit = ProposeFit(evidence);
+        const double offset = CalcOffset(*product_, mate);
+        if (offset > limits_.axis_distance) {
+          mate.fit->reason += fmt::format(", {:.3f} mm off its axis", units::ToMm(offset));
+        }
       }
     }
   }

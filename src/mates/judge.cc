@@ -24,13 +24,6 @@ const Feature& FeatureOf(const Product& product, const Connector& connector) {
   return product.part_of(connector.occurrence).features[connector.feature.index()];
 }
 
-/** Of the shaft's axis, or the ball's centre, from the frame's origin, which is the hole's. */
-double CalcOffset(const Product& product, const Mate& mate) {
-  const Feature& feature = FeatureOf(product, mate.b);
-  const Vec3 d = mate.b.X_BM.p() - feature.origin_B;
-  return IsCentre(mate.kind) ? d.norm() : feature.axis_B.cross(d).norm();
-}
-
 /** Of the plane of b from that of a; positive: a gap. */
 double CalcGap(const Product& product, const Mate& mate) {
   const Feature& feature = FeatureOf(product, mate.b);
@@ -143,6 +136,12 @@ double CalcConfidence(const Product& product, const Mate& mate, const InferenceL
 }
 
 }  // namespace
+
+double CalcOffset(const Product& product, const Mate& mate) {
+  const Feature& feature = FeatureOf(product, mate.b);
+  const Vec3 d = mate.b.X_BM.p() - feature.origin_B;
+  return IsCentre(mate.kind) ? d.norm() : feature.axis_B.cross(d).norm();
+}
 
 std::string DescribeEvidence(const Product& product, const Mate& mate) {
   const Feature& a = FeatureOf(product, mate.a);

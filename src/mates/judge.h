@@ -12,6 +12,10 @@ namespace hvas::mates {
 void Judge(const product::Product& product, const InferenceLimits& limits, FastenerKind part_a,
            FastenerKind part_b, product::Mate* mate);
 
+/** How far the shaft's axis, or the ball's centre, is from the frame's origin, which is the hole's,
+ the seat's or the socket's: how far off they are drawn [m]. */
+[[nodiscard]] double CalcOffset(const product::Product& product, const product::Mate& mate);
+
 /** Evidence alone, in a few words with numbers: "radii 3.000/2.990 mm, engaged 12.00 mm, axes 0.00
  um apart". */
 [[nodiscard]] std::string DescribeEvidence(const product::Product& product,

@@ -23,6 +23,7 @@ using spatial::Box;
 
 constexpr double kAlignedGap = 2e-3;          // Between the ends of holes in line [m].
 constexpr double kSphereInterference = 0.01;  // Part of the radius.
+constexpr double kCosTilted = 0.9986;         // Of a shaft that leans in its hole: 3 deg. A choice.
 constexpr double kAlignedShare = 0.1;         // Of the shorter hole, that may lie in the other.
 
 /** The box of a hole, shaft or cone: that of a cylinder around its span. */
@@ -297,8 +298,20 @@ bool DoTeethFit(const Feature& hole, const Feature& shaft) {
          (!has_shaft || hole.radius <= shaft.radius + kSame);
 }
 
+/** Whether a shaft that is off its hole's axis, or tilted in it, is inside the hole all along. */
+bool IsInside(const Feature& hole, const Feature& shaft, const Pose& X_HS, const AxisHit& hit) {
+  constexpr double kRounding = 1e-6;  // [m]: by which drawn circles that touch overlap. A choice.
+  const Vec3 axis = X_HS.q() * shaft.axis_B;
+  const Vec3 origin = X_HS * shaft.origin_B;
+  const auto is_inside_at = [&](double at) {
+    const Vec3 p = hole.origin_B + at * hole.axis_B;
+    return axis.cross(p - origin).norm() <= hole.radius - shaft.radius + kRounding;
+  };
+  return is_inside_at(hit.low) && is_inside_at(hit.high);
+}
+
 bool DoEngage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
-              const InferenceLimits& limits, double scale, AxisHit* hit) {
+              const InferenceLimits& limits, double scale, double cos_angle, AxisHit* hit) {
   if (std::abs(hole.radius - shaft.radius) >=
       CalcLargestPlay(limits, scale, std::min(hole.radius, shaft.radius))) {
     return false;
@@ -306,8 +319,10 @@ bool DoEngage(const Feature& hole, const Feature& shaft, const Pose& X_HS,
   const AxialSpans spans = CalcAxialSpans(hole, shaft, X_HS);
   hit->low = spans.low;
   hit->high = spans.high;
+  hit->is_off_axis = spans.axis_distance >= limits.axis_distance * scale ||
+                     std::abs(hole.axis_B.dot(X_HS.q() * shaft.axis_B)) < cos_angle;
   return spans.length() > limits.axial_overlap * scale &&
-         spans.axis_distance < limits.axis_distance * scale;
+         (!hit->is_off_axis || IsInside(hole, shaft, X_HS, *hit));
 }
 
 }  // namespace
@@ -326,7 +341,7 @@ void PairSearch::TestPair(const Context& context, const SearchFeature& a, const 
   const FeatureKind body = is_first ? b.own->kind : a.kind;
   if (seat == FeatureKind::kSocket && body == FeatureKind::kBall) {
     TestBall(context, a, b, is_first, hits);
-  } else if (std::abs(a.feature->axis_B.dot(b.axis)) >= cos_angle_) {
+  } else if (std::abs(a.feature->axis_B.dot(b.axis)) >= kCosTilted) {
     TestOnAxis(context, a, b, is_first, hits);
   }
 }
@@ -357,12 +372,13 @@ void PairSearch::TestOnAxis(const Context& context, const SearchFeature& a, cons
     const Part& shaft_part = is_seat_in_a ? context.b : context.a;
     if (DoEndsFit(a.arc_B, context.X_AB.q() * b.own->arc_B) &&
         DoTeethFit(*seat.feature, *body.feature) &&
-        DoEngage(*seat.feature, *body.feature, X_SB, limits_, context.scale, &hit) &&
+        DoEngage(*seat.feature, *body.feature, X_SB, limits_, context.scale, cos_angle_, &hit) &&
         !IsAround(hole_part, *seat.feature, shaft_part, *body.feature, X_SB, hit,
                   limits_.axis_distance * context.scale)) {
       hits->axes.push_back(hit);
     }
   } else if (seat.kind == FeatureKind::kConeSeat && body.kind == FeatureKind::kTaper &&
+             std::abs(a.feature->axis_B.dot(b.axis)) >= cos_angle_ &&
              IsSameCone(*seat.feature, *body.feature, X_SB, limits_, context.scale)) {
     hits->seats.push_back({MateKind::kConeSeat, is_seat_in_a, seat.id, body.id});
   }

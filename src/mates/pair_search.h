@@ -16,13 +16,15 @@
 /** What two parts have to do with each other, from their features and their relative pose alone. */
 namespace hvas::mates {
 
-/** A hole and a shaft on one axis that engage. */
+/** A hole and a shaft that engage: on one axis, or the shaft off the hole's axis, by no more than
+ its play lets it. */
 struct AxisHit {
   bool is_hole_in_a{true};  ///< False where the hole is the second part's.
   product::FeatureId hole;
   product::FeatureId shaft;
   double low{0};  ///< Engaged interval along the hole's axis from the hole's origin [m].
   double high{0};
+  bool is_off_axis{false};
 };
 
 /** Two holes on one axis that follow each other. */

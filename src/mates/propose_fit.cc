@@ -106,6 +106,16 @@ std::optional<std::string> FindThreadReason(const FitEvidence& evidence, double 
   return std::nullopt;
 }
 
+/** The thread that the two diameters are, where enough of it is engaged. */
+const fits::Thread* FindDrawnThread(const FitEvidence& evidence) {
+  constexpr double kLeastTurns = 2;  // Fewer hold nothing, and are there by chance: a choice.
+  const fits::Thread* thread =
+      fits::FindThreadOfPair(2 * evidence.hole_radius, 2 * evidence.shaft_radius);
+  const bool is_long = thread != nullptr && (evidence.engaged == 0 ||
+                                             evidence.engaged >= kLeastTurns * thread->pitch);
+  return is_long ? thread : nullptr;
+}
+
 /** Whether a shaft without a name is drawn into its hole as a thread is: at the outer diameter in a
  hole for its core, and not by the little that a pin is pressed. */
 bool IsThreadInterference(double diameter, double interference) {
@@ -151,7 +161,13 @@ Fit ProposeFit(const FitEvidence& evidence) {
       evidence.shaft_part == FastenerKind::kScrew) {
     return {FitKind::kPassage, "", nominal, true, "a screw in a through hole"};
   }
-  if (!evidence.shaft_is_pin && IsThreadInterference(d, -clearance)) {
+  const fits::Thread* const pair = evidence.is_pressed ? nullptr : FindDrawnThread(evidence);
+  if (pair != nullptr) {
+    return MakeThread(evidence.shaft_radius, "hole of " + Describe(nominal) + " and shaft of " +
+                                                 Describe(d) + " are core and outer diameter of " +
+                                                 pair->designation);
+  }
+  if (!evidence.is_pressed && IsThreadInterference(d, -clearance)) {
     if (evidence.is_hollow) {
       return {FitKind::kInsert, "", d, true,
               "drawn interference of " + Describe(-clearance) + " of a hollow part is an insert's"};

@@ -22,7 +22,8 @@ struct FitEvidence {
   bool may_pass{false};  ///< A round shaft may go through a hole without a fit; a width has one.
   product::ThreadKind hole_thread{product::ThreadKind::kNone};
   product::ThreadKind shaft_thread{product::ThreadKind::kNone};
-  bool shaft_is_pin{false};  ///< The shaft has the name of a pin.
+  bool is_pressed{false};  ///< The name of one part is that of a pin or a bearing.
+  double engaged{0};       ///< Engaged length [m]; 0: it is not known.
 };
 
 /** Proposes a fit where the file does not give one, by the first row that holds:
@@ -40,13 +41,15 @@ struct FitEvidence {
  | play of a proposed code, or less | nut or insert as the shaft | insert |
  | more play than the widest code | a shaft that may pass | passage |
  | hole not smaller | a rivet or a screw that may pass | passage |
+ | core and outer diameter of a thread, over two turns | any but pins and bearings by their names | thread |
  | interference of a thread's depth, d <= 12 mm | hollow shaft | insert |
- | interference of a thread's depth, d <= 12 mm | any but a pin by its name | thread |
+ | interference of a thread's depth, d <= 12 mm | any but pins and bearings by their names | thread |
  | interference above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 |
  | equal within 1 um | any | H7/g6 |
  | clearance | any | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
 
- An interference is of a thread's depth above 1.5 % of d and a fourth of that size's thread, or 10 %
+ Core and outer diameter are those of `fits::FindThreadOfPair`. An interference is of a thread's
+ depth above 1.5 % of d and a fourth of that size's thread, or 10 %
  of d where there is no such size. The code is empty for threads, inserts and passages, and where
  ISO 286 has none for the size. The nominal diameter is the drawn hole's, that of the shaft for
  threads and inserts. */

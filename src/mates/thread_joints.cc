@@ -37,14 +37,22 @@ bool IsPlastic(const product::Material& material) {
 
 const fits::Thread* FindStandard(const Part& hub, const Part& screw, const Mate& mate,
                                  double pitch) {
+  const fits::Thread* const pair =
+      pitch > 0 ? nullptr : fits::FindThreadOfPair(2 * mate.hole_radius, 2 * mate.shaft_radius);
   for (const Part* part : {&screw, &hub}) {
-    if (const auto size = product::ParseThreadSize(part->name)) {
-      if (const fits::Thread* thread = fits::FindThread(size->diameter, size->pitch)) {
-        return thread;
-      }
+    const auto size = product::ParseThreadSize(part->name);
+    const fits::Thread* const named =
+        size ? fits::FindThread(size->diameter, size->pitch) : nullptr;
+    if (named != nullptr) {
+      // A name that states the size alone leaves the pitch to the two diameters.
+      const bool is_same = pair != nullptr && pair->diameter == named->diameter;
+      return is_same && !size->is_pitch_stated ? pair : named;
     }
   }
-  const fits::Thread* thread = fits::FindThread(2 * mate.shaft_radius, pitch);
+  if (pair != nullptr) {
+    return pair;
+  }
+  const fits::Thread* const thread = fits::FindThread(2 * mate.shaft_radius, pitch);
   return thread != nullptr ? thread : fits::FindThread(2 * mate.hole_radius, pitch);
 }
 
@@ -63,9 +71,7 @@ ThreadJoint MakeJoint(const product::Product& product, const Mate& mate) {
     joint.is_left_handed = product::IsLeftHanded(part, drawn);
   }
   joint.pitch = joint.is_modelled ? drawn.thread_pitch : 0;
-  const double known_pitch =
-      joint.is_modelled ? drawn.thread_pitch : std::max(shaft.thread_pitch, hole.thread_pitch);
-  joint.thread = FindStandard(hub, screw, mate, known_pitch);
+  joint.thread = FindStandard(hub, screw, mate, joint.pitch);
   joint.diameter = 2 * mate.shaft_radius;
   const bool is_bought_nut = product::ClassifyName(hub.name) == product::FastenerKind::kNut;
   if (IsSelfTappingByName(screw.name) ||

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,27 +35,112 @@ bool HasThreadSize(std::string_view text) {
   return false;
 }
 
-// The standards of screws and nuts met most in drawings.
-constexpr std::array<std::string_view, 30> kScrewStandards{
-    "din 84",   "din 912",  "din 913",  "din 914",   "din 916",   "din 931",
-    "din 933",  "din 963",  "din 965",  "din 6912",  "din 7981",  "din 7982",
-    "din 7984", "din 7985", "din 7991", "iso 1207",  "iso 2009",  "iso 2010",
-    "iso 4014", "iso 4017", "iso 4026", "iso 4027",  "iso 4029",  "iso 4762",
-    "iso 7045", "iso 7046", "iso 7380", "iso 10642", "iso 14579", "iso 14583"};
-constexpr std::array<std::string_view, 11> kNutStandards{
-    "din 439",  "din 555",  "din 562",  "din 934",  "din 985",  "din 1587",
-    "iso 4032", "iso 4033", "iso 4035", "iso 7040", "iso 10511"};
+// Numbers of standards of screws, bolts, studs and threaded rods, and of nuts, ascending.
+constexpr std::array<int, 84> kDinScrews{
+    84, 85, 186, 188, 261, 316, 404, 417, 427, 438, 444, 464, 478, 479, 480, 529, 551, 553, 561,
+    564, 571, 580, 601, 603, 604, 605, 607, 608, 609, 610, 653, 835, 906, 908, 910, 912, 913, 914,
+    915, 916, 920, 921, 923, 927, 931, 933, 938, 939, 940, 960, 961, 963, 964, 965, 966, 975, 976,
+    6900, 6912, 6914, 6921, 7500, 7504, 7505, 7513, 7516, 7964, 7968, 7969, 7971, 7972, 7973, 7976,
+    7981, 7982, 7983, 7984, 7985, 7990, 7991, 7996, 7997, 7999, 15237};
+constexpr std::array<int, 44> kDinNuts{
+    315, 431, 439, 466, 467, 508, 546, 547, 548, 555, 557, 562, 582, 917, 928, 929, 934, 935, 936,
+    937, 970, 971, 972, 979, 980, 981, 982, 985, 986, 1587, 1804, 1816, 6303, 6330, 6331, 6334,
+    6915, 6923, 6924, 6925, 6926, 6927, 70852, 80705};
+constexpr std::array<int, 56> kIsoScrews{
+    1207, 1479, 1481, 1482, 1483, 1580, 2009, 2010, 2342, 3266, 4014, 4015, 4016, 4017, 4018, 4026,
+    4027, 4028, 4029, 4162, 4753, 4762, 4766, 7045, 7046, 7047, 7048, 7049, 7050, 7051, 7053, 7379,
+    7380, 7411, 7412, 7434, 7435, 7436, 8676, 8677, 8678, 8765, 10642, 14579, 14580, 14581, 14582,
+    14583, 14584, 14585, 14586, 14587, 15480, 15481, 15482, 15483};
+constexpr std::array<int, 29> kIsoNuts{
+    299, 4032, 4033, 4034, 4035, 4036, 4161, 7040, 7041, 7042, 7043, 7044, 7413, 7414, 7417, 7418,
+    7419, 7719, 7720, 7721, 8673, 8674, 8675, 10511, 10512, 10513, 10663, 12125, 12126};
+constexpr std::array<int, 2> kEnScrews{
+    1662, 1665};
+constexpr std::array<int, 5> kEnNuts{
+    1661, 1663, 1664, 1666, 1667};
+constexpr std::array<int, 5> kJisScrews{
+    1111, 1176, 1177, 1180, 1189};
+constexpr std::array<int, 4> kJisNuts{
+    1163, 1181, 1183, 1185};
+constexpr std::array<int, 18> kGbScrews{
+    65, 67, 68, 69, 70, 77, 78, 79, 80, 818, 819, 820, 845, 846, 5780, 5781, 5782, 5783};
+constexpr std::array<int, 16> kGbNuts{
+    41, 56, 62, 802, 889, 923, 6170, 6171, 6172, 6173, 6174, 6175, 6177, 6178, 6182, 6184};
 
-constexpr std::array<std::string_view, 13> kNutWords{
-    "nut",    "locknut", "wingnut", "hexnut",         "heat set",      "helicoil", "rivnut",
-    "tuerca", "ecrou",   "porca",   "gewindeeinsatz", "gewindebuchse", "nutsert"};
-constexpr std::array<std::string_view, 15> kScrewWords{
-    "screw",    "bolt",     "bhcs",         "shcs",         "fhcs",
-    "stud",     "hexbolt",  "grub screw",   "set screw",    "cap screw",
-    "tornillo", "parafuso", "machinescrew", "gewindestift", "gewindestange"};
-// German compounds have the noun at their end: Zylinderschraube, Sechskantmutter.
-constexpr std::array<std::string_view, 2> kScrewEnds{"schraube", "schrauben"};
-constexpr std::array<std::string_view, 2> kNutEnds{"mutter", "muttern"};
+/** The standards of one body. */
+struct Standards {
+  std::string_view body;
+  std::span<const int> screws;
+  std::span<const int> nuts;
+};
+
+constexpr std::array kStandards{
+    Standards{"din", kDinScrews, kDinNuts}, Standards{"iso", kIsoScrews, kIsoNuts},
+    Standards{"en", kEnScrews, kEnNuts},    Standards{"jis", kJisScrews, kJisNuts},
+    Standards{"gb", kGbScrews, kGbNuts}};
+
+/** What a standard of the B18 series of ANSI and ASME is of, by the numbers behind: B18.2.4.1M. */
+FastenerKind ClassifyB18(int part, int section) {
+  // B18.2: 2 and 4 are of nuts, the others of bolts and screws; B18.16 and B18.17 are of nuts.
+  if ((part == 2 && (section == 2 || section == 4)) || part == 16 || part == 17) {
+    return FastenerKind::kNut;
+  }
+  return part == 2 || part == 3 || part == 5 || part == 6 || part == 10 ? FastenerKind::kScrew
+                                                                        : FastenerKind::kNone;
+}
+
+/** The number that a word is; 0 for all others. */
+int ReadNumberWord(const std::vector<Word>& words, std::size_t at) {
+  constexpr std::size_t kMostDigits = 6;
+  const bool is_number = at < words.size() && IsDigit(words[at].text.front()) &&
+                         words[at].text.size() <= kMostDigits;
+  return is_number ? std::stoi(words[at].text) : 0;
+}
+
+/** What a name is by the standard that it states: "DIN 315", "ISO4762", "GB/T 6170", "ANSI
+ B18.2.4.1M". */
+FastenerKind ClassifyStandard(const std::vector<Word>& words) {
+  const auto has = [](std::span<const int> numbers, int number) {
+    return std::binary_search(numbers.begin(), numbers.end(), number);
+  };
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const int number = ReadNumberWord(words, i);
+    if (number == 18 && words[i - 1].text == "b" && ReadNumberWord(words, i + 2) > 0) {
+      return ClassifyB18(ReadNumberWord(words, i + 1), ReadNumberWord(words, i + 2));
+    }
+    // GB/T and JIS B have a letter between the body and the number.
+    const bool has_letter = i > 1 && words[i - 1].text.size() == 1;
+    const std::string& body = words[has_letter ? i - 2 : i - 1].text;
+    for (const Standards& standards : kStandards) {
+      if (number > 0 && standards.body == body) {
+        if (has(standards.nuts, number)) {
+          return FastenerKind::kNut;
+        }
+        if (has(standards.screws, number)) {
+          return FastenerKind::kScrew;
+        }
+      }
+    }
+  }
+  return FastenerKind::kNone;
+}
+
+constexpr std::array<std::string_view, 24> kNutWords{
+    "nut", "locknut", "lock nut", "wingnut", "hexnut", "heat set", "helicoil", "rivnut", "tuerca",
+    "ecrou", "porca", "dado esagonale", "gewindeeinsatz", "gewindebuchse", "nutsert", "moer", "mutteri",
+    "matica", "nakretka", "gaika", "гайка", "Гайка", "螺母", "ナット"
+};
+constexpr std::array<std::string_view, 45> kScrewWords{
+    "screw", "bolt", "bhcs", "shcs", "fhcs", "stud", "hexbolt", "grub screw", "set screw",
+    "cap screw", "tornillo", "parafuso", "boulon", "bullone", "machinescrew",
+    "gewindestift", "gewindestange", "gewindebolzen", "threaded rod", "threadedrod", "allthread",
+    "tige filetee", "barra filettata", "varilla roscada", "barra roscada", "vite", "vis", "schroef",
+    "skruv", "skrue", "ruuvi", "sruba", "wkret", "sroub", "болт", "Болт", "винт", "Винт", "шпилька",
+    "Шпилька", "螺栓", "螺钉", "螺丝", "ボルト", "ねじ"
+};
+// German and Dutch compounds have the noun at their end: Zylinderschraube, Sechskantmutter.
+constexpr std::array<std::string_view, 3> kScrewEnds{"schraube", "schrauben", "schroef"};
+constexpr std::array<std::string_view, 3> kNutEnds{"mutter", "muttern", "moer"};
 
 // What makes an insert one with a thread; others are of foam, or hold a lens.
 constexpr std::array<std::string_view, 6> kInsertWords{"threaded", "thread", "heat",
@@ -76,7 +162,10 @@ bool HasFastenerWord(std::string_view text, const std::vector<Word>& words,
                      const std::array<std::string_view, kCount>& fasteners,
                      const std::array<std::string_view, kEnds>& ends) {
   const auto is_named = [&](std::string_view fastener) {
-    return NamesThing(text, words, fastener, kOtherThings);
+    // Words are of Latin letters; those of other scripts are found as they are written.
+    const bool is_latin = IsLetter(fastener.front());
+    return is_latin ? NamesThing(text, words, fastener, kOtherThings)
+                    : text.find(fastener) != std::string_view::npos;
   };
   const auto is_compound = [&](const Word& word) {
     return std::any_of(ends.begin(), ends.end(), [&word, &is_named](std::string_view end) {
@@ -102,6 +191,7 @@ struct CoarsePitch {
 
 // ISO 261:1998, table 2, coarse pitches.
 constexpr std::array kCoarsePitches{
+    CoarsePitch{68, 6},     CoarsePitch{9, 1.25},   CoarsePitch{11, 1.5},
     CoarsePitch{1, 0.25},   CoarsePitch{1.1, 0.25}, CoarsePitch{1.2, 0.25}, CoarsePitch{1.4, 0.3},
     CoarsePitch{1.6, 0.35}, CoarsePitch{1.8, 0.35}, CoarsePitch{2, 0.4},    CoarsePitch{2.2, 0.45},
     CoarsePitch{2.5, 0.45}, CoarsePitch{3, 0.5},    CoarsePitch{3.5, 0.6},  CoarsePitch{4, 0.7},
@@ -120,7 +210,8 @@ struct InchThread {
 };
 
 constexpr std::array kInchThreads{
-    InchThread{"2", 0.086, {56, 64}},     InchThread{"4", 0.112, {40, 48}},
+    InchThread{"0", 0.06, {80, 80}},      InchThread{"1", 0.073, {64, 72}},
+    InchThread{"2", 0.086, {56, 64}},     InchThread{"3", 0.099, {48, 56}},     InchThread{"4", 0.112, {40, 48}},
     InchThread{"5", 0.125, {40, 44}},     InchThread{"6", 0.138, {32, 40}},
     InchThread{"8", 0.164, {32, 36}},     InchThread{"10", 0.19, {24, 32}},
     InchThread{"12", 0.216, {24, 28}},    InchThread{"1/4", 0.25, {20, 28}},
@@ -128,9 +219,11 @@ constexpr std::array kInchThreads{
     InchThread{"7/16", 0.4375, {14, 20}}, InchThread{"1/2", 0.5, {13, 20}},
     InchThread{"9/16", 0.5625, {12, 18}}, InchThread{"5/8", 0.625, {11, 18}},
     InchThread{"3/4", 0.75, {10, 16}},    InchThread{"7/8", 0.875, {9, 14}},
-    InchThread{"1", 1, {8, 12}}};
+    InchThread{"1", 1, {8, 12}},          InchThread{"1 1/8", 1.125, {7, 12}},
+    InchThread{"1 1/4", 1.25, {7, 12}},   InchThread{"1 3/8", 1.375, {6, 12}},
+    InchThread{"1 1/2", 1.5, {6, 12}}};
 
-/** Reads digits with at most one point, "2.5"; moves `at` past them. */
+/** Reads digits with at most one point, or comma, "2.5"; moves `at` past them. */
 std::optional<double> ReadNumber(std::string_view text, std::size_t* at) {
   double value = 0;
   double place = 0;  // 0 before the point, then 0.1, 0.01, ...
@@ -140,7 +233,7 @@ std::optional<double> ReadNumber(std::string_view text, std::size_t* at) {
       const double digit = text[i] - '0';
       value = place == 0 ? 10 * value + digit : value + place * digit;
       place *= 0.1;
-    } else if (text[i] == '.' && place == 0 && i > *at && i + 1 < text.size() &&
+    } else if ((text[i] == '.' || text[i] == ',') && place == 0 && i > *at && i + 1 < text.size() &&
                IsDigit(text[i + 1])) {
       place = 0.1;
     } else {
@@ -166,29 +259,62 @@ std::optional<ThreadSize> ParseMetric(std::string_view text) {
     if (!diameter_mm || !ends || *diameter_mm < 1 || *diameter_mm > 64) {
       continue;
     }
-    ThreadSize size{units::FromMm(*diameter_mm), 0};
-    while (at < text.size() && (text[at] == ' ' || text[at] == 'x' || text[at] == '_')) {
+    ThreadSize size{units::FromMm(*diameter_mm), 0, false};
+    constexpr std::string_view kBetween = " x_*";
+    while (at < text.size() && kBetween.find(text[at]) != std::string_view::npos) {
       ++at;
     }
     const auto second_mm = ReadNumber(text, &at);
     const bool is_pitch = second_mm && *second_mm > 0 && *second_mm <= kLargestPitch * *diameter_mm;
     size.pitch = is_pitch ? units::FromMm(*second_mm) : FindCoarsePitch(size.diameter);
+    size.is_pitch_stated = is_pitch;
     return size;
   }
   return std::nullopt;
 }
 
-std::optional<ThreadSize> ParseInch(std::string_view text) {
+/** A folded name without signs of inches and blanks around dashes: "1/4 in - 20" is "1/4-20". */
+std::string CloseUpInches(std::string_view text) {
+  std::string closed;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::string_view rest = text.substr(i);
+    const bool is_unit = i > 0 && (IsDigit(text[i - 1]) || text[i - 1] == ' ') &&
+                         rest.starts_with("in") && (rest.size() == 2 || !IsLetter(rest[2]));
+    if (is_unit) {
+      ++i;
+    } else if (text[i] != '"') {
+      closed += text[i];
+    }
+  }
+  for (std::size_t at = closed.find('-'); at != std::string::npos; at = closed.find('-', at + 1)) {
+    while (at > 0 && closed[at - 1] == ' ') {
+      closed.erase(--at, 1);
+    }
+    while (at + 1 < closed.size() && closed[at + 1] == ' ') {
+      closed.erase(at + 1, 1);
+    }
+  }
+  return closed;
+}
+
+std::optional<ThreadSize> ParseInch(std::string_view folded) {
+  const std::string text = CloseUpInches(folded);
+  const auto is_part = [](char c) { return IsDigit(c) || c == '/' || c == '.' || c == '-'; };
   for (const InchThread& thread : kInchThreads) {
     for (const int count : thread.threads_per_inch) {
-      const std::string word = std::string(thread.size) + "-" + std::to_string(count);
-      const std::size_t at = text.find(word);
-      const std::size_t end = at + word.size();
-      const auto is_part = [](char c) { return IsDigit(c) || c == '/' || c == '.' || c == '-'; };
-      if (at != std::string_view::npos && (at == 0 || !is_part(text[at - 1])) &&
-          (end >= text.size() || !IsDigit(text[end]))) {
-        return ThreadSize{thread.diameter_in * units::kMetresPerInch,
-                          units::kMetresPerInch / count};
+      const std::string number = std::to_string(count);
+      const std::string dashed = std::string(thread.size) + "-" + number;
+      // "3/8 16 UNC": without a dash the series has to be there.
+      for (const std::string& word :
+           {dashed, std::string(thread.size) + " " + number + " un",
+            std::string(thread.size) + " " + number + "un"}) {
+        const std::size_t at = text.find(word);
+        const std::size_t end = at + word.size();
+        if (at != std::string::npos && (at == 0 || !is_part(text[at - 1])) &&
+            (end >= text.size() || !IsDigit(text[end]))) {
+          return ThreadSize{thread.diameter_in * units::kMetresPerInch,
+                            units::kMetresPerInch / count, true};
+        }
       }
     }
   }
@@ -215,11 +341,13 @@ double FindCoarsePitch(double diameter, double tolerance) {
 FastenerKind ClassifyName(std::string_view name) {
   const std::string text = FoldName(name);
   const std::vector<Word> words = SplitWords(text);
+  const FastenerKind by_standard = ClassifyStandard(words);
   if (HasFastenerWord(text, words, kNutWords, kNutEnds) || IsThreadedInsert(text, words) ||
-      HasOneOf(text, kNutStandards)) {
+      by_standard == FastenerKind::kNut) {
     return FastenerKind::kNut;
   }
-  if (HasFastenerWord(text, words, kScrewWords, kScrewEnds) || HasOneOf(text, kScrewStandards)) {
+  if (HasFastenerWord(text, words, kScrewWords, kScrewEnds) ||
+      by_standard == FastenerKind::kScrew) {
     return FastenerKind::kScrew;
   }
   return HasThreadSize(text) && !HasOneOf(text, kOtherThings) ? FastenerKind::kScrew

@@ -446,6 +446,19 @@ std::optional<std::size_t> FindNutBore(const Part& part, const Line& line, const
   return std::nullopt;
 }
 
+/** Whether flats go all along a part: those of a hub's bore, not of a screw's socket. */
+bool GoesThrough(const Part& part, const Line& line, const Hexagon& hexagon) {
+  constexpr double kAllAlong = 0.9;  // Of the part: mouths are chamfered. A choice.
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Vec3& vertex : part.mesh.vertices) {
+    const double at = (vertex - line.origin).dot(line.axis);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  return hexagon.high - hexagon.low > kAllAlong * (high - low);
+}
+
 /** Finds the thread of a fastener with hexagons on a line: its shank, or the bore of a nut. */
 std::optional<std::size_t> FindThreadAtHexagons(const Part& part, const Line& line,
                                                 const std::vector<Hexagon>& hexagons) {
@@ -476,7 +489,10 @@ void MarkByShape(const std::vector<Line>& lines, double tolerance, Part* part) {
     return;
   }
   for (const Line& line : lines) {
-    const std::vector<Hexagon> hexagons = FindHexagons(*part, line, tolerance);
+    std::vector<Hexagon> hexagons = FindHexagons(*part, line, tolerance);
+    std::erase_if(hexagons, [&](const Hexagon& hexagon) {
+      return hexagon.is_socket && GoesThrough(*part, line, hexagon);
+    });
     const auto thread =
         hexagons.empty() ? std::nullopt : FindThreadAtHexagons(*part, line, hexagons);
     if (thread) {

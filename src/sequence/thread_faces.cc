@@ -1,6 +1,7 @@
 #include "sequence/thread_faces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "mates/mate_kind.h"
@@ -33,6 +34,34 @@ std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
         product::IsParallel(feature.axis_B, thread.axis_B) &&
         product::DistanceToAxis(feature.origin_B, thread.origin_B, thread.axis_B) < kOnAxis) {
       faces.insert(faces.end(), feature.faces.begin(), feature.faces.end());
+    }
+  }
+  return faces;
+}
+
+std::vector<product::FaceId> ListLeadInFaces(const product::Product& product,
+                                             const product::Mate& mate,
+                                             const product::Connector& side) {
+  // Choices: nuts of ISO 4032 are chamfered to 1.15 of their thread, and ends meet as drawn.
+  constexpr double kWidest = 1.25;  // Of the screw's radius; what is wider seats a head.
+  constexpr double kAtTheEnd = 20e-6;
+  constexpr double kOnAxis = 50e-6;  // [m]
+  const product::Part& part = product.part_of(side.occurrence);
+  const product::Feature& thread = part.features[side.feature.index()];
+  std::vector<product::FaceId> faces;
+  for (const product::Feature& cone : part.features) {
+    if (!product::IsCone(cone.kind) || cone.radius > kWidest * mate.shaft_radius ||
+        !product::IsParallel(cone.axis_B, thread.axis_B) ||
+        product::DistanceToAxis(cone.origin_B, thread.origin_B, thread.axis_B) > kOnAxis) {
+      continue;
+    }
+    const auto is_end = [&](double at_cone) {
+      const Vec3 p_B = cone.origin_B + at_cone * cone.axis_B;
+      const double at = thread.axis_B.dot(p_B - thread.origin_B);
+      return std::min(std::abs(at - thread.span_low), std::abs(at - thread.span_high)) < kAtTheEnd;
+    };
+    if (is_end(cone.span_low) || is_end(cone.span_high)) {
+      faces.insert(faces.end(), cone.faces.begin(), cone.faces.end());
     }
   }
   return faces;

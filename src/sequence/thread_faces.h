@@ -19,6 +19,13 @@ namespace hvas::sequence {
 [[nodiscard]] std::vector<product::FaceId> ListLockingFaces(const product::Product& product,
                                                             const product::Mate& mate);
 
+/** Lists the chamfers at the ends of one side of a thread: cones on its axis that meet its hole or
+ shaft. Those of a nut may go to the screw's diameter, or beyond, so that what is behind them is met
+ by the screw's end. @param side  The mate's a or b. */
+[[nodiscard]] std::vector<product::FaceId> ListLeadInFaces(const product::Product& product,
+                                                           const product::Mate& mate,
+                                                           const product::Connector& side);
+
 /** Lists those of some faces, and of all next to them, that may overlap while two parts pass one
  another: tips, chamfers and mouths. What the parts rest on each other with is none of them.
  @param own  The part whose faces these are. @returns sorted indices. */

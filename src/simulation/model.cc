@@ -317,16 +317,20 @@ ModelMate MakeMate(const Product& product, const product::Mate& mate, bool is_nu
   made.faces_b = faces->Make(mate.b);
   const std::vector<product::FaceId> locking =
       is_nut ? sequence::ListLockingFaces(product, mate) : std::vector<product::FaceId>();
-  if (!locking.empty()) {
-    std::vector<product::FaceId> all = FacesOf(product, mate.a);
-    all.insert(all.end(), locking.begin(), locking.end());
-    made.faces_a = std::make_shared<haptics::MateFaces>(
-        sequence::CollectMateFaces(product.part_of(mate.a.occurrence), all));
+  if (!sequence::IsDrawnThread(mate) && locking.empty()) {
+    return made;
   }
-  if (sequence::IsDrawnThread(mate) || !locking.empty()) {
-    made.faces_a = sequence::WidenForThread(product, mate, mate.a, *made.faces_a);
-    made.faces_b = sequence::WidenForThread(product, mate, mate.b, *made.faces_b);
-  }
+  const auto widen = [&](const product::Connector& side, std::vector<product::FaceId> more) {
+    std::vector<product::FaceId> all = FacesOf(product, side);
+    more.insert(more.end(), all.begin(), all.end());
+    const haptics::MateFaces own =
+        sequence::CollectMateFaces(product.part_of(side.occurrence), more);
+    return sequence::WidenForThread(product, mate, side, own);
+  };
+  std::vector<product::FaceId> of_hole = sequence::ListLeadInFaces(product, mate, mate.a);
+  of_hole.insert(of_hole.end(), locking.begin(), locking.end());
+  made.faces_a = widen(mate.a, std::move(of_hole));
+  made.faces_b = widen(mate.b, sequence::ListLeadInFaces(product, mate, mate.b));
   return made;
 }
 

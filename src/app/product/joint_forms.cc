@@ -13,6 +13,7 @@
 #include "app/output/text_table.h"
 #include "base/units.h"
 #include "mates/fastened_joints.h"
+#include "mates/polygon_fits.h"
 #include "mates/prismatic_fits.h"
 #include "mates/thread_joints.h"
 #include "product/names.h"
@@ -22,11 +23,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using mates::FastenedJoint;
+using mates::PolygonFit;
 using mates::ThreadJoint;
 using mates::ThreadJointKind;
 using product::Mate;
 using product::Product;
 using units::ToMm;
+
+constexpr double kOnAxis = 20e-6;  // [m]: the limit of axis-hole mates (docs/algorithms/mates.md).
 
 const char* NameOf(fits::ThreadHole hole) {
   switch (hole) {
@@ -86,6 +90,7 @@ Json ToJson(const FastenedJoint& joint) {
           {"circle_diameter_mm",
            joint.circle_diameter > 0 ? Json(ToMm(joint.circle_diameter)) : Json()},
           {"pilot", joint.pilot ? Json(joint.pilot->value()) : Json()},
+          {"offset_mm", ToMm(joint.offset)},
           {"free_translations", joint.free_translations},
           {"free_rotations", joint.free_rotations}};
 }
@@ -111,11 +116,52 @@ Json ToJson(const ThreadJoint& joint) {
           {"preload_n", is_tightened ? Json(joint.tightening.preload) : Json()}};
 }
 
-Json ToJson(const Product& product, const Mate& mate) {
+/** The pockets and bores that fits are in: those that no part is in, and the others. */
+std::vector<PolygonFit> ListPolygons(const Product& product, const Selection& selection) {
+  std::vector<PolygonFit> fits = mates::FindPolygonFits(product);
+  std::erase_if(fits, [&](const PolygonFit& fit) {
+    return !selection.Has(fit.outer) && !(fit.inner && selection.Has(*fit.inner));
+  });
+  return fits;
+}
+
+/** What the walls of a mate are of: of a slot where they are of no pocket or bore around an axis. */
+std::string DescribeForm(const std::vector<PolygonFit>& polygons, const Mate& mate) {
+  const auto found = std::find_if(polygons.begin(), polygons.end(), [&](const PolygonFit& fit) {
+    return std::find(fit.mates.begin(), fit.mates.end(), mate.id) != fit.mates.end();
+  });
+  return found != polygons.end() ? mates::DescribePolygon(found->form) : "slot";
+}
+
+/** A pocket or bore that no mate of two walls stands for: its part alone is in it, or flats that
+ have none opposite, as those of a D. */
+Json ToJson(const Product& product, const PolygonFit& fit) {
+  const Vec3 way_W =
+      -(product.occurrences[fit.outer.index()].X_WB.q() * fit.form.axis_B);
+  const auto of_inner = [&fit](double value) { return fit.inner ? Json(value) : Json(); };
+  return {{"mate", Json()},
+          {"form", mates::DescribePolygon(fit.form)},
+          {"outer", fit.outer.value()},
+          {"inner", fit.inner ? Json(fit.inner->value()) : Json()},
+          {"way_out", {way_W.x(), way_W.y(), way_W.z()}},
+          {"outer_width_mm", ToMm(fit.form.width)},
+          {"inner_width_mm", of_inner(ToMm(fit.inner_width))},
+          {"clearance_mm", of_inner(ToMm(fit.form.width - fit.inner_width))},
+          {"engaged_mm", ToMm(fit.engaged)},
+          {"breadth_mm", Json()},
+          {"lead_in_deg", Json()},
+          {"lead_in_mm", Json()},
+          {"kind", Json()},
+          {"code", ""},
+          {"reason", fit.inner ? "the flats turn with each other" : "no part of the product is in it"}};
+}
+
+Json ToJson(const Product& product, const std::vector<PolygonFit>& polygons, const Mate& mate) {
   const mates::LeadIn lead_in = mates::FindLeadIn(product, mate);
   const product::Fit fit = mate.fit.value_or(product::Fit{});
   const Vec3 way_W = WayOutOf(product, mate);
   return {{"mate", mate.id.value()},
+          {"form", DescribeForm(polygons, mate)},
           {"outer", mate.a.occurrence.value()},
           {"inner", mate.b.occurrence.value()},
           {"way_out", {way_W.x(), way_W.y(), way_W.z()}},
@@ -164,8 +210,9 @@ void PrintThreads(const std::vector<ThreadJoint>& joints, bool is_all) {
   limit.PrintRest();
 }
 
-void PrintPrismatic(const Product& product, const std::vector<const Mate*>& fits, bool is_all) {
-  fmt::print("\nPrismatic fits (slot and tongue, pocket and block, sandwich)\n");
+void PrintPrismatic(const Product& product, const std::vector<const Mate*>& fits,
+                    const std::vector<PolygonFit>& polygons, bool is_all) {
+  fmt::print("\nPrismatic fits (slot and tongue, pocket and block, sandwich, polygon)\n");
   TextTable table({"mate", "outer part, inner part", "width\nmm", "clearance\nmm", "engaged\nmm",
                    "lead-in\nmm", "fit"},
                   2);
@@ -184,7 +231,21 @@ void PrintPrismatic(const Product& product, const std::vector<const Mate*>& fits
          fmt::format("{:.3f}", ToMm(2 * (mate->hole_radius - mate->shaft_radius))),
          fmt::format("{:.2f}", ToMm(mate->overlap)),
          lead_in > 0 ? fmt::format("{:.2f}", ToMm(lead_in)) : std::string("-"),
-         fmt::format("{}{}{}", ToString(fit.kind), fit.code.empty() ? "" : " ", fit.code)});
+         fmt::format("{}{}{}", ToString(fit.kind), fit.code.empty() ? "" : " ", fit.code)},
+        DescribeForm(polygons, *mate));
+  }
+  for (const PolygonFit& fit : polygons) {
+    if (!fit.mates.empty() || !limit.Next()) {
+      continue;
+    }
+    const auto name = [&product](product::OccurrenceId id) {
+      return Shorten(product.occurrences[id.index()].name, 10);
+    };
+    table.Add({"-", fmt::format("{}, {}", name(fit.outer), fit.inner ? name(*fit.inner) : "-"),
+               fmt::format("{:.3f}", ToMm(fit.form.width)),
+               fit.inner ? fmt::format("{:.3f}", ToMm(fit.form.width - fit.inner_width)) : "-",
+               fit.inner ? fmt::format("{:.2f}", ToMm(fit.engaged)) : "-", "-", "-"},
+              mates::DescribePolygon(fit.form));
   }
   fmt::print("{}", table.ToText(2));
   limit.PrintRest();
@@ -192,7 +253,7 @@ void PrintPrismatic(const Product& product, const std::vector<const Mate*>& fits
 
 void PrintFastened(const Product& product, const std::vector<FastenedJoint>& joints, bool is_all) {
   fmt::print("\nFastened joints (parts held together by screws or pins)\n");
-  TextTable table({"parts", "fasteners", "of\nmm", "circle\nmm", "pilot"}, 2);
+  TextTable table({"parts", "fasteners", "of\nmm", "circle\nmm", "pilot", "off axis\nmm"}, 2);
   ListLimit limit(is_all);
   for (const FastenedJoint& joint : joints) {
     if (limit.Next()) {
@@ -201,7 +262,8 @@ void PrintFastened(const Product& product, const std::vector<FastenedJoint>& joi
                        Shorten(product.occurrences[joint.b.index()].name, 14)),
            std::to_string(joint.fasteners.size()), fmt::format("{:.2f}", ToMm(joint.diameter)),
            joint.circle_diameter > 0 ? fmt::format("{:.2f}", ToMm(joint.circle_diameter)) : "-",
-           joint.pilot ? fmt::format("m{}", joint.pilot->value()) : "-"});
+           joint.pilot ? fmt::format("m{}", joint.pilot->value()) : "-",
+           joint.offset > kOnAxis ? fmt::format("{:.3f}", ToMm(joint.offset)) : "-"});
     }
   }
   fmt::print("{}", table.ToText(2));
@@ -216,8 +278,14 @@ void AddJointForms(const Product& product, const Selection& selection, Json* jso
     threads.push_back(ToJson(joint));
   }
   Json& prismatic = (*json)["prismatic_fits"] = Json::array();
+  const std::vector<PolygonFit> polygons = ListPolygons(product, selection);
   for (const Mate* mate : ListPrismatic(product, selection)) {
-    prismatic.push_back(ToJson(product, *mate));
+    prismatic.push_back(ToJson(product, polygons, *mate));
+  }
+  for (const PolygonFit& fit : polygons) {
+    if (fit.mates.empty()) {
+      prismatic.push_back(ToJson(product, fit));
+    }
   }
   Json& fastened = (*json)["fastened_joints"] = Json::array();
   for (const FastenedJoint& joint : ListFastened(product, selection)) {
@@ -231,8 +299,9 @@ void PrintJointForms(const Product& product, const Selection& selection, bool is
     PrintThreads(joints, is_all);
   }
   const std::vector<const Mate*> fits = ListPrismatic(product, selection);
-  if (!fits.empty()) {
-    PrintPrismatic(product, fits, is_all);
+  const std::vector<PolygonFit> polygons = ListPolygons(product, selection);
+  if (!fits.empty() || !polygons.empty()) {
+    PrintPrismatic(product, fits, polygons, is_all);
   }
   const std::vector<FastenedJoint> fastened = ListFastened(product, selection);
   if (!fastened.empty()) {

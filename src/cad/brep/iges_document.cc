@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <IGESBasic_SubfigureDef.hxx>
 #include <IGESCAFControl.hxx>
 #include <IGESControl_Reader.hxx>
@@ -30,8 +31,12 @@
 #include <TDocStd_Document.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_TShape.hxx>
@@ -84,9 +89,17 @@ class EntityLabels {
     return found == colors_.end() ? std::nullopt : std::optional(found->second);
   }
 
+  /** The directory entry that a shape is made of, as IGES numbers them: "D17"; empty where it is
+   none. */
+  [[nodiscard]] std::string EntryOf(const TopoDS_Shape& shape) const {
+    const auto found = entries_.find(shape.TShape().get());
+    return found == entries_.end() ? std::string() : fmt::format("D{}", found->second);
+  }
+
  private:
   std::map<const TopoDS_TShape*, std::string> names_;
   std::map<const TopoDS_TShape*, Quantity_Color> colors_;
+  std::map<const TopoDS_TShape*, int> entries_;
   std::vector<TopoDS_Shape> shapes_;  // So that no other shape gets one's address.
 };
 
@@ -126,6 +139,7 @@ EntityLabels::EntityLabels(const Handle(IGESData_IGESModel) & model,
       continue;
     }
     shapes_.push_back(shape);
+    entries_.emplace(shape.TShape().get(), 2 * i - 1);
     if (std::string name = NameOfEntity(entity); !name.empty()) {
       names_.emplace(shape.TShape().get(), std::move(name));
     }
@@ -165,6 +179,9 @@ class DocumentBuilder {
   TDF_Label MakeAssembly(const std::vector<Child>& children, const std::string& name);
   void SetColors(const TDF_Label& part, const std::vector<TopoDS_Shape>& sources,
                  const std::function<TopoDS_Shape(const TopoDS_Shape&)>& modified);
+  void ReportOpen(const SewnFaces& sewn, const std::vector<TopoDS_Shape>& faces,
+                  const std::string& name);
+  void ReportOpenSolid(const TopoDS_Shape& solid, const std::string& name);
   void Report() const;
   [[nodiscard]] std::uint64_t NumberOf(const TDF_Label& label);
 
@@ -238,6 +255,51 @@ void DocumentBuilder::SetColors(const TDF_Label& part, const std::vector<TopoDS_
   }
 }
 
+/** Says which surfaces of a group stay open, by their entities in the file. */
+void DocumentBuilder::ReportOpen(const SewnFaces& sewn, const std::vector<TopoDS_Shape>& faces,
+                                 const std::string& name) {
+  constexpr std::size_t kMostNamed = 8;  // Entities in one message: a choice.
+  TopTools_IndexedMapOfShape open;
+  TopExp::MapShapes(sewn.open, TopAbs_FACE, open);
+  std::vector<std::string> entries;
+  for (const TopoDS_Shape& face : ListFaces(faces)) {
+    std::string entry = labels_.EntryOf(face);
+    if (!entry.empty() && open.Contains(sewn.modified(face))) {
+      entries.push_back(std::move(entry));
+    }
+  }
+  const std::size_t more = entries.size() > kMostNamed ? entries.size() - kMostNamed : 0;
+  entries.resize(entries.size() - more);
+  diagnostics_->Warn(
+      "open-faces", name.empty() ? file_ : name,
+      fmt::format("surfaces do not close to a solid: {} edges have no neighbour within {:g} mm{}{}{}",
+                  sewn.open_edges, sewn.tolerance_mm, entries.empty() ? "" : "; entities ",
+                  fmt::join(entries, ", "), more > 0 ? fmt::format(" and {} more", more) : ""),
+      "export the part as a solid (IGES type 186), or as STEP");
+}
+
+/** Warns of a solid of the file whose shell does not close. */
+void DocumentBuilder::ReportOpenSolid(const TopoDS_Shape& solid, const std::string& name) {
+  int open_edges = 0;
+  TopTools_IndexedDataMapOfShapeListOfShape faces_of;
+  TopExp::MapShapesAndAncestors(solid, TopAbs_EDGE, TopAbs_FACE, faces_of);
+  for (int i = 1; i <= faces_of.Extent(); ++i) {
+    const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(i));
+    const bool is_alone = faces_of.FindFromIndex(i).Extent() == 1 &&
+                          !BRep_Tool::IsClosed(
+                              edge, TopoDS::Face(faces_of.FindFromIndex(i).First()));
+    open_edges += is_alone && !BRep_Tool::Degenerated(edge) ? 1 : 0;
+  }
+  if (open_edges > 0) {
+    const std::string entry = labels_.EntryOf(solid);
+    diagnostics_->Warn(
+        "open-faces", name.empty() ? file_ : name,
+        fmt::format("the solid{}{} does not close: {} edges belong to one face alone",
+                    entry.empty() ? "" : " of entity ", entry, open_edges),
+        "close the part in the CAD system and export it again, or as STEP");
+  }
+}
+
 /** Sews the loose faces of one group: a part for each solid, and one for what stays open. */
 void DocumentBuilder::AddSewn(const std::vector<TopoDS_Shape>& faces, const std::string& name,
                               std::vector<Child>* children) {
@@ -248,11 +310,7 @@ void DocumentBuilder::AddSewn(const std::vector<TopoDS_Shape>& faces, const std:
   std::vector<TopoDS_Shape> bodies = sewn.solids;
   if (!sewn.open.IsNull()) {
     bodies.push_back(sewn.open);
-    diagnostics_->Warn(
-        "open-faces", name.empty() ? file_ : name,
-        fmt::format("surfaces do not close to a solid: {} edges have no neighbour within {:g} mm",
-                    sewn.open_edges, sewn.tolerance_mm),
-        "export the part as a solid (IGES type 186), or as STEP");
+    ReportOpen(sewn, faces, name);
   }
   sewn_solids_ += static_cast<int>(sewn.solids.size());
   sewn_faces_ += static_cast<int>(faces.size());
@@ -306,6 +364,7 @@ TDF_Label DocumentBuilder::AddGroup(const std::vector<TopoDS_Shape>& members,
 TDF_Label DocumentBuilder::AddDefinition(const TopoDS_Shape& shape) {
   const std::string name = labels_.NameOf(shape);
   if (shape.ShapeType() == TopAbs_SOLID) {
+    ReportOpenSolid(shape, name);
     const TDF_Label part = AddPart(shape, name);
     if (const auto color = labels_.ColorOf(shape)) {
       colors_->SetColor(part, *color, XCAFDoc_ColorGen);

@@ -23,15 +23,21 @@
 #include <StepShape_ConnectedFaceSet.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <StepShape_OrientedClosedShell.hxx>
+#include <StepShape_ShapeRepresentation.hxx>
+#include <StepShape_SolidModel.hxx>
+#include <TCollection_ExtendedString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TDF_LabelMapHasher.hxx>
+#include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_TShape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
@@ -97,13 +103,38 @@ PlacedTree ExamineProducts(const STEPCAFControl_Reader& reader) {
   return ExamineTree(uses, roots);
 }
 
+/** Names of files that the STEP file refers to where it has their geometry itself: documents from
+ which a part was exported, as CATIA names them. */
+std::set<std::string> ListDocumentsOfParts(const STEPCAFControl_Reader& reader) {
+  std::set<std::string> names;
+  const Handle(Transfer_TransientProcess) process =
+      reader.Reader().WS()->TransferReader()->TransientProcess();
+  STEPConstruct_ExternRefs references(reader.Reader().WS());
+  references.LoadExternRefs();
+  for (int i = 1; i <= references.NbExternRefs(); ++i) {
+    const char* const name = references.FileName(i);
+    const Handle(StepBasic_ProductDefinition) definition = references.ProdDef(i);
+    if (name == nullptr || definition.IsNull()) {
+      continue;
+    }
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, definition);
+    if (!shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More()) {
+      names.insert(name);
+    }
+  }
+  return names;
+}
+
 void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagnostics) {
   std::vector<std::string> missing;
+  const std::set<std::string> of_parts = ListDocumentsOfParts(reader);
   using ExternFiles =
       NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
   for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
     const Handle(STEPCAFControl_ExternFile)& file = it.Value();
-    if (file.IsNull() || file->GetLoadStatus() != IFSelect_RetDone || !file->GetTransferStatus()) {
+    const bool is_read = !file.IsNull() && file->GetLoadStatus() == IFSelect_RetDone &&
+                         file->GetTransferStatus();
+    if (!is_read && of_parts.count(it.Key().ToCString()) == 0) {
       missing.emplace_back(it.Key().ToCString());
     }
   }
@@ -246,6 +277,62 @@ IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, const StepText& 
   };
 }
 
+/** Makes parts of the solids of a file that has no PRODUCT, each with the name of its entity. Errors:
+ kUnsupported for more than `most`; kUnreadable where there are no solids either. */
+Result<void> AddSolids(STEPCAFControl_Reader* reader, const std::string& file, std::size_t most,
+                       const Handle(TDocStd_Document) & document, Diagnostics* diagnostics) {
+  const Handle(StepData_StepModel) model = reader->Reader().StepModel();
+  const Handle(XSControl_WorkSession) session = reader->Reader().WS();
+  const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
+  // Representations first: they have the unit of length.
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    if (model->Value(i)->IsKind(STANDARD_TYPE(StepShape_ShapeRepresentation))) {
+      reader->ChangeReader().TransferEntity(model->Value(i));
+    }
+  }
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  std::vector<TDF_Label> parts;
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto solid = Handle(StepShape_SolidModel)::DownCast(model->Value(i));
+    if (solid.IsNull()) {
+      continue;
+    }
+    TopoDS_Shape shape = TransferBRep::ShapeResult(process, solid);
+    if (shape.IsNull() && reader->ChangeReader().TransferEntity(solid)) {
+      shape = TransferBRep::ShapeResult(process, solid);
+    }
+    if (shape.IsNull()) {
+      continue;
+    }
+    if (parts.size() >= most) {
+      return FailTooManyParts(most, file);
+    }
+    const std::string own = solid->Name().IsNull() ? "" : solid->Name()->ToCString();
+    const std::string name = own.empty() ? fmt::format("solid #{}", model->IdentLabel(solid)) : own;
+    parts.push_back(shapes->NewShape());
+    shapes->SetShape(parts.back(), shape);
+    TDataStd_Name::Set(parts.back(), TCollection_ExtendedString(name.c_str(), Standard_True));
+  }
+  if (parts.empty()) {
+    return Fail(ErrorCode::kUnreadable, "the STEP file has no product and no solid that can be read",
+                file, "export the file again from the CAD system");
+  }
+  if (parts.size() > 1) {
+    const TDF_Label root = shapes->NewShape();
+    TDataStd_Name::Set(root, TCollection_ExtendedString(file.c_str(), Standard_True));
+    for (const TDF_Label& part : parts) {
+      shapes->AddComponent(root, part, TopLoc_Location());
+    }
+  }
+  shapes->UpdateAssemblies();
+  diagnostics->Warn("no-product", file,
+                    fmt::format("the file has no PRODUCT: its {} solids are the parts, with the "
+                                "names of their entities",
+                                parts.size()),
+                    "export it as an assembly, in which each part has a name");
+  return {};
+}
+
 }  // namespace
 
 std::string ReadStepFile(const std::filesystem::path& file, const ImportOptions& options,
@@ -305,9 +392,11 @@ Result<CadDocument> ReadStepDocument(const std::filesystem::path& file, const St
                                       units::kMetresPerMillimetre / text.length_scale());
   const opencascade::handle<TransferProgress> indicator = new TransferProgress(&watch.progress);
   if (!reader.Transfer(result.document, indicator->Start())) {
-    CloseDocument(result.document);
-    return Fail(ErrorCode::kUnreadable, "the STEP file has no product that can be read", name,
-                "export the file again from the CAD system");
+    if (auto added = AddSolids(&reader, name, options.max_parts, result.document, diagnostics);
+        !added) {
+      CloseDocument(result.document);
+      return Unexpected(std::move(added).error());
+    }
   }
   XCAFDoc_DocumentTool::SetLengthUnit(result.document, units::kMetresPerMillimetre);
   ReportMissingFiles(reader, diagnostics);

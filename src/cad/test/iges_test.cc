@@ -19,6 +19,8 @@
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <gtest/gtest.h>
@@ -239,7 +241,41 @@ TEST(ReadIges, SurfacesThatDoNotCloseAreAPartWithoutASolidAndAWarning) {
   for (const Diagnostic& item : diagnostics.items()) {
     if (item.code == "open-faces") {
       EXPECT_NE(item.message.find("4 edges"), std::string::npos) << item.message;
+      EXPECT_NE(item.message.find("entities D"), std::string::npos) << item.message;
     }
+  }
+}
+
+TEST(ReadIges, ASolidWhoseShellDoesNotCloseSaysSoWithItsEntity) {
+  const TemporaryFolder folder;
+  const BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  int count = 0;
+  for (TopExp_Explorer it(BRepPrimAPI_MakeBox(20, 20, 20).Shape(), TopAbs_FACE);
+       it.More() && count < 5; it.Next(), ++count) {
+    builder.Add(shell, it.Current());
+  }
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  WriteShape(solid, folder / "open.igs", Form::kSolids);
+  Diagnostics diagnostics;
+  ImportIges(folder / "open.igs", &diagnostics);
+  ASSERT_EQ(CountCode(diagnostics, "open-faces"), 1);
+  for (const Diagnostic& item : diagnostics.items()) {
+    if (item.code == "open-faces") {
+      EXPECT_NE(item.message.find("4 edges"), std::string::npos) << item.message;
+      EXPECT_NE(item.message.find(" D"), std::string::npos) << item.message;
+    }
+  }
+  // Closed ones have seams and poles, and say nothing.
+  for (const TopoDS_Shape& closed :
+       {BRepPrimAPI_MakeSphere(10).Shape(), BRepPrimAPI_MakeCylinder(5, 20).Shape(), MakePlate()}) {
+    WriteShape(closed, folder / "closed.igs", Form::kSolids);
+    Diagnostics silent;
+    ImportIges(folder / "closed.igs", &silent);
+    EXPECT_EQ(CountCode(silent, "open-faces"), 0);
   }
 }
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -256,6 +258,89 @@ TEST(ReadCad, ReportsProgressUpToTheEnd) {
                   .has_value());
   EXPECT_EQ(last, "done");
   EXPECT_EQ(fraction, 1);
+}
+
+/** Reads a STEP file, and writes its statements again as `change` leaves them; empty ones are left
+ out. */
+void RewriteStatements(const std::filesystem::path& file,
+                       const std::function<void(std::string*)>& change) {
+  std::ifstream in(file);
+  std::string text;
+  for (std::string statement; std::getline(in, statement, ';');) {
+    change(&statement);
+    text += statement.empty() ? "" : statement + ";";
+  }
+  in.close();
+  std::ofstream(file) << text;
+}
+
+bool HasAnyOf(const std::string& text, const std::vector<const char*>& words) {
+  return std::any_of(words.begin(), words.end(), [&text](const char* word) {
+    return text.find(word) != std::string::npos;
+  });
+}
+
+TEST(ReadCad, ADocumentFromWhichAPartWasExportedIsNoMissingFile) {
+  for (const char* document : {"plate.CATPart", "C:\\work\\plate.SLDPRT", "plate.prt"}) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "plate.step";
+    DocumentBuilder builder;
+    builder.AddPart(MakePlate(), "plate");
+    builder.Write(file);
+    RewriteStatements(file, [document](std::string* statement) {
+      const std::string plain = "PRODUCT_DEFINITION('design','',";
+      const std::size_t at = statement->find(plain);
+      if (at != std::string::npos) {
+        statement->replace(at, plain.size(),
+                           "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS('design','',");
+        statement->insert(statement->rfind(')'), ",(#99002)");
+        *statement += std::string(";\n#99001 = DOCUMENT_TYPE('');\n#99002 = DOCUMENT('1','") +
+                      document + "','a document',#99001)";
+      }
+    });
+    Diagnostics diagnostics;
+    const Product product = ImportOrDie(file, &diagnostics);
+    EXPECT_EQ(product.parts.size(), 1u) << document;
+    EXPECT_EQ(CountCode(diagnostics, "missing-file"), 0) << document;
+  }
+}
+
+TEST(ReadCad, SolidsWithoutAProductAreThePartsWithAWarning) {
+  for (const char* unit : {"MM", "INCH"}) {
+    SCOPED_TRACE(unit);
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "loose.step";
+    DocumentBuilder builder;
+    const TDF_Label plate = builder.AddPart(MakePlate(), "plate");
+    const TDF_Label pin = builder.AddPart(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "pin");
+    const TDF_Label root = builder.AddAssembly("rig");
+    builder.AddComponent(root, plate, Translation(0, 0, 0), "plate");
+    builder.AddComponent(root, pin, Translation(0, 0, 0), "pin");
+    builder.Write(file, unit);
+    int solids = 0;
+    RewriteStatements(file, [&solids](std::string* statement) {
+      if (HasAnyOf(*statement, {"= PRODUCT", "=PRODUCT", "NEXT_ASSEMBLY", "SHAPE_REPRESENTATION_REL",
+                                "REPRESENTATION_RELATIONSHIP", "CONTEXT_DEPENDENT_SHAPE",
+                                "SHAPE_DEFINITION_REPRESENTATION", "APPLICATION_"})) {
+        statement->clear();
+      }
+      const std::size_t at = statement->find("MANIFOLD_SOLID_BREP('");
+      const std::size_t begin = at + std::string("MANIFOLD_SOLID_BREP('").size();
+      if (at != std::string::npos && ++solids == 2) {  // The first keeps no name.
+        statement->replace(begin, statement->find('\'', begin) - begin, "Bolzen 5");
+      } else if (at != std::string::npos) {
+        statement->erase(begin, statement->find('\'', begin) - begin);
+      }
+    });
+    Diagnostics diagnostics;
+    const Product product = ImportOrDie(file, &diagnostics);
+    ASSERT_EQ(product.parts.size(), 2u);
+    EXPECT_EQ(CountCode(diagnostics, "no-product"), 1);
+    EXPECT_EQ(product.parts[1].name, "Bolzen 5");
+    EXPECT_EQ(product.parts[0].name.rfind("solid #", 0), 0u) << product.parts[0].name;
+    EXPECT_NEAR(product.parts[0].mass.volume, kPlateVolume, 1e-6 * kPlateVolume);
+    EXPECT_NEAR(product.box_W.size().x(), 0.065, 1e-4);
+  }
 }
 
 Error ErrorOf(const std::filesystem::path& file) {

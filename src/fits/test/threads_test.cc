@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +53,43 @@ TEST(Threads, AreFoundByDiameterAndPitch) {
   EXPECT_EQ(FindThread(6.35e-3, 0.9e-3)->designation, "1/4-28 UNF");
   EXPECT_EQ(FindThread(4.6e-3, 0), nullptr);
   EXPECT_EQ(FindThread(0.3, 0), nullptr);
+  // A size with fine pitches alone is none where no pitch is known.
+  EXPECT_EQ(FindThread(15e-3, 0), nullptr);
+  EXPECT_EQ(FindThread(15e-3, 1e-3)->designation, "M15x1");
+}
+
+TEST(Threads, EveryThreadIsFoundByTheTwoDiametersAtWhichItMayBeDrawn) {
+  for (const Thread& thread : ListThreads()) {
+    for (const double hole : {thread.minor_diameter(), thread.diameter - thread.pitch,
+                              thread.core_diameter(), thread.tap_drill}) {
+      const Thread* found = FindThreadOfPair(hole, thread.diameter);
+      ASSERT_NE(found, nullptr) << thread.designation << " in " << hole;
+      EXPECT_EQ(found->diameter, thread.diameter);
+      // The tap drill of one pitch may be the core of another: then both are the drawing's.
+      const bool is_drawn_too = std::abs(hole - found->minor_diameter()) < 20e-6 ||
+                                std::abs(hole - found->core_diameter()) < 20e-6 ||
+                                std::abs(hole - found->tap_drill) < 20e-6 ||
+                                std::abs(hole - (found->diameter - found->pitch)) < 20e-6;
+      EXPECT_TRUE(found->pitch == thread.pitch || is_drawn_too) << thread.designation;
+    }
+    EXPECT_EQ(FindThreadOfPair(thread.minor_diameter(), thread.diameter)->pitch, thread.pitch)
+        << thread.designation;
+  }
+}
+
+TEST(Threads, WhatIsPressedTogetherOrDrawnWrongIsNoPairOfAThread) {
+  // Diameters of shaft and hole [mm]: interferences of press fits and pins, and errors.
+  const std::pair<double, double> pairs[] = {{40, 39.95}, {3, 2.9},       {30, 29.9}, {6, 5.99},
+                                             {40, 39},    {28.575, 25.4}, {50, 43},   {8, 8}};
+
+  for (const auto& [shaft, hole] : pairs) {
+    EXPECT_EQ(FindThreadOfPair(1e-3 * hole, 1e-3 * shaft), nullptr) << shaft << " in " << hole;
+  }
+  EXPECT_EQ(FindThreadOfPair(28.376e-3, 30e-3)->designation, "M30x1.5");
+  EXPECT_EQ(FindThreadOfPair(28.4e-3, 30e-3)->designation, "M30x1.5");
+  EXPECT_EQ(FindThreadOfPair(26.211e-3, 30e-3)->designation, "M30");
+  EXPECT_EQ(FindThreadOfPair(4.92e-3, 6e-3)->designation, "M6");
+  EXPECT_EQ(FindThreadOfPair(4.976e-3, 6.35e-3)->designation, "1/4-20 UNC");
 }
 
 TEST(Threads, HolesOfAScrewAreToldByTheirDiameter) {

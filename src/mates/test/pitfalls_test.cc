@@ -341,6 +341,42 @@ TEST(PitfallF, AHexagonMakesAScrewOfANamelessPart) {
   EXPECT_EQ(pin.mates[0].fit->kind, FitKind::kInterference);
 }
 
+TEST(PitfallF, AHexagonalPocketMakesNoNutAndABoreWithSixFlatsNoScrew) {
+  // A holder with a pocket for a nut around a clearance hole; a bolt goes through it.
+  Product pocket;
+  Part* holder = AddRound(&pocket, "part 1", FeatureKind::kHole, 4.2e-3, 0, 5e-3);
+  AddHexagon(holder, 13.2e-3, -1, 5e-3, 12e-3);
+  AddRound(&pocket, "bolt M8x20", FeatureKind::kShaft, 4e-3, -5e-3, 15e-3);
+  AddInPlace(&pocket);
+  InferInto(&pocket);
+  ASSERT_EQ(CountMates(pocket, MateKind::kAxisHole), 1);
+  EXPECT_EQ(pocket.mates[0].fit->kind, FitKind::kPassage);
+  // A ring whose bore has six flats all along is in its seat by a fit.
+  Product seat;
+  AddRound(&seat, "part 1", FeatureKind::kHole, 14.29e-3, 0, 6e-3);
+  Part* ring = AddRound(&seat, "part 2", FeatureKind::kShaft, 14.28e-3, 0, 20e-3);
+  AddHexagon(ring, 12.7e-3, -1, 0, 20e-3);
+  AddInPlace(&seat);
+  InferInto(&seat);
+  ASSERT_EQ(CountMates(seat, MateKind::kAxisHole), 1);
+  EXPECT_EQ(seat.mates[0].fit->kind, FitKind::kClearance);
+}
+
+TEST(PitfallF, AHexagonWithAThreadInItsBoreIsANutAndOneWithAPlainBoreIsNot) {
+  for (const bool is_threaded : {true, false}) {
+    Product product;
+    Part* nut = AddRound(&product, "part 1", FeatureKind::kHole, 4e-3, 0, 6.8e-3);
+    AddHexagon(nut, 13e-3, 1, 0, 6.8e-3);
+    nut->features[0].thread = is_threaded ? product::ThreadKind::kNominal
+                                          : product::ThreadKind::kNone;
+    AddRound(&product, "part 2", FeatureKind::kShaft, 4e-3, -5e-3, 15e-3);
+    AddInPlace(&product);
+    InferInto(&product);
+    ASSERT_EQ(CountMates(product, MateKind::kAxisHole), 1);
+    EXPECT_EQ(product.mates[0].fit->kind, is_threaded ? FitKind::kThread : FitKind::kClearance);
+  }
+}
+
 TEST(PitfallG, NeitherABushingBetweenNorATubeAroundATubeIsPassedOver) {
   Product bushed;
   AddRound(&bushed, "housing", FeatureKind::kHole, 10e-3, 0, 40e-3);

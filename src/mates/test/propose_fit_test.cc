@@ -74,7 +74,7 @@ TEST(ProposeFit, PinInAHoleThatIsSlightlySmallerIsPressed) {
   EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kInterference);
   evidence.hole_radius = 1.25e-3;
   EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kThread);
-  evidence.shaft_is_pin = true;
+  evidence.is_pressed = true;
   EXPECT_EQ(ProposeFit(evidence).kind, FitKind::kInterference);
   for (const char* name : {"Dowel Pin 3x10", "ISO 2338 - 4 m6 x 20", "pin_2", "Zylinderstift"}) {
     EXPECT_TRUE(product::IsPinName(name)) << name;

@@ -84,5 +84,58 @@ TEST(ThreadJoints, OnlyAMaterialThatIsAPlasticAsAWholeWordMakesAScrewSelfTapping
   }
 }
 
+/** A shaft in a hole, both without any name of a fastener, 2.5 diameters of it engaged. */
+Product MakeNamelessPair(double hole, double shaft, double bore = 0) {
+  Product product;
+  product::Part* hub = testing::AddPart(&product, "part 1");
+  testing::AddCylinder(hub, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 0.5 * hole, 0,
+                       2.5 * shaft);
+  product::Part* screw = testing::AddPart(&product, "part 2");
+  testing::AddCylinder(screw, FeatureKind::kShaft, Vec3::Zero(), Vec3::UnitZ(), 0.5 * shaft, 0,
+                       3 * shaft);
+  if (bore > 0) {
+    testing::AddCylinder(screw, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 0.5 * bore, 0,
+                         3 * shaft);
+  }
+  for (const auto& part : {product::PartId(0), product::PartId(1)}) {
+    testing::AddOccurrence(&product, part, spatial::Pose());
+  }
+  return product;
+}
+
+TEST(ThreadJoints, TwoDiametersOfAnyThreadAreItWithoutANameAlsoWhereTheScrewIsHollow) {
+  for (const fits::Thread& thread : fits::ListThreads()) {
+    SCOPED_TRACE(thread.designation);
+    for (const double bore : {0.0, 0.6 * thread.diameter}) {
+      const auto joints =
+          FindIn(MakeNamelessPair(thread.minor_diameter(), thread.diameter, bore));
+      ASSERT_EQ(joints.size(), 1U);
+      ASSERT_NE(joints[0].thread, nullptr);
+      EXPECT_EQ(joints[0].thread->designation, thread.designation);
+      EXPECT_NEAR(joints[0].turns, 2.5 * thread.diameter / thread.pitch, 1e-6);
+    }
+  }
+}
+
+TEST(ThreadJoints, APinAndABearingInASmallerHoleAreNoThreadWhateverTheDiameters) {
+  for (const char* name : {"bearing 6206", "Kugellager", "Zylinderstift", "dowel pin"}) {
+    Product product = MakeNamelessPair(28.376e-3, 30e-3);
+    product.parts[1].name = name;
+    EXPECT_TRUE(FindIn(std::move(product)).empty()) << name;
+  }
+}
+
+TEST(ThreadJoints, ANameThatStatesTheSizeAloneLeavesThePitchToTheDiameters) {
+  for (const auto& [name, expected] :
+       {std::pair("nut M8", "M8x1"), std::pair("nut M8x0.75", "M8x0.75"),
+        std::pair("Mutter M8x1,25", "M8"), std::pair("part", "M8x1")}) {
+    Product product = MakeNamelessPair(6.917e-3, 8e-3);
+    product.parts[0].name = name;
+    const auto joints = FindIn(std::move(product));
+    ASSERT_EQ(joints.size(), 1U) << name;
+    EXPECT_EQ(joints[0].thread->designation, expected) << name;
+  }
+}
+
 }  // namespace
 }  // namespace hvas::mates
