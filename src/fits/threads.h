@@ -35,8 +35,8 @@ struct Thread {
 [[nodiscard]] std::span<const Thread> ListThreads();
 
 /** The thread whose diameter lies within a fiftieth of a drawn one, and whose pitch is nearest to
- `pitch`, or the coarse one where `pitch` is 0 (none where the size has only fine ones); a metric one before a unified one that is as near.
- Null where there is none.
+ `pitch`, or the coarse one where `pitch` is 0 (none where the size has only fine ones); a metric
+ one before a unified one that is as near. Null where there is none.
  @param diameter,pitch [m] */
 [[nodiscard]] const Thread* FindThread(double diameter, double pitch);
 

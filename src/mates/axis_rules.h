@@ -11,8 +11,8 @@
 
 namespace hvas::mates {
 
-/** A hole of one occurrence and a shaft of another that engage, as drawn: on one axis, or a screw in
- a hole whose axis it misses by less than its play. */
+/** A hole of one occurrence and a shaft of another that engage, as drawn: on one axis, or a screw
+ in a hole whose axis it misses by less than its play. */
 struct PlacedAxisHit {
   product::OccurrenceId hole_occurrence;
   product::OccurrenceId shaft_occurrence;

@@ -40,9 +40,9 @@ Hole MakeHole(const Product& product, const Mate& mate) {
   const product::Feature& feature =
       product.part_of(shaft.occurrence).features[shaft.feature.index()];
   const Pose& X_WB = product.occurrences[shaft.occurrence.index()].X_WB;
-  const Vec3 p_B = feature.origin_B +
-                   feature.axis_B.dot(shaft.X_BM.p() - feature.origin_B) * feature.axis_B;
-  return {mate.a.occurrence, &mate, X_WB * p_B, X_WB.q() * feature.axis_B,
+  const Vec3 p_B =
+      feature.origin_B + feature.axis_B.dot(shaft.X_BM.p() - feature.origin_B) * feature.axis_B;
+  return {mate.a.occurrence,         &mate, X_WB * p_B, X_WB.q() * feature.axis_B,
           CalcOffset(product, mate), 0};
 }
 

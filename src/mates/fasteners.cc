@@ -57,8 +57,8 @@ std::pair<double, double> CalcExtent(const Part& part, const std::vector<product
 bool GoesThrough(const Part& part, const Feature& plane, const Feature& axis) {
   constexpr double kAllAlong = 0.9;  // Of the part: mouths are chamfered. A choice.
   const auto [low, high] = CalcExtent(part, plane.faces, axis);
-  double first = std::numeric_limits<double>::infinity();
-  double last = -first;
+  double first = axis.span_low;
+  double last = axis.span_high;
   for (const Vec3& vertex : part.mesh.vertices) {
     const double at = axis.axis_B.dot(vertex - axis.origin_B);
     first = std::min(first, at);

@@ -184,8 +184,8 @@ class Inference {
     }
     const auto is_chance = [&](const PlacedAxisHit& hit) {
       const Shaft shaft(hit.shaft_occurrence, hit.shaft);
-      return hit.is_off_axis && (screws.count(shaft) == 0 ||
-                                 centred.count({shaft, hit.hole_occurrence}) > 0);
+      return hit.is_off_axis &&
+             (screws.count(shaft) == 0 || centred.count({shaft, hit.hole_occurrence}) > 0);
     };
     std::vector<PlacedAxisHit> kept;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -194,7 +194,8 @@ class Inference {
       for (std::size_t k = pairs_[i].first_axis; k < end; ++k) {
         if (!is_chance(axis_hits_[k])) {
           kept.push_back(axis_hits_[k]);
-          kept.back().is_screw |= screws.count({kept.back().shaft_occurrence, kept.back().shaft}) > 0;
+          kept.back().is_screw |=
+              screws.count({kept.back().shaft_occurrence, kept.back().shaft}) > 0;
         }
       }
       pairs_[i].first_axis = first;
@@ -347,6 +348,20 @@ class Inference {
     return nuts;
   }
 
+  /** How far a shaft is off its hole's axis, and along which axes of the hole's part. */
+  [[nodiscard]] std::string DescribeOffset(const Mate& mate, double offset) const {
+    const Feature& shaft = FeatureOf(mate.b.occurrence, mate.b.feature);
+    const Vec3 d_B = mate.b.X_BM.p() - shaft.origin_B;
+    const Vec3 off_W =
+        PoseOf(mate.b.occurrence).q() * Vec3(d_B.dot(shaft.axis_B) * shaft.axis_B - d_B);
+    constexpr double kDigits = 1e3;  // What is printed: zero has no sign. A choice.
+    const Vec3 off_mm = units::ToMm(1.0) * (PoseOf(mate.a.occurrence).q().conjugate() * off_W);
+    const auto print = [](double value) { return std::round(kDigits * value) / kDigits + 0.0; };
+    return fmt::format(", {:.3f} mm off its axis (x {:.3f}, y {:.3f}, z {:.3f})",
+                       units::ToMm(offset), print(off_mm.x()), print(off_mm.y()),
+                       print(off_mm.z()));
+  }
+
   void ProposeFits() {
     const std::vector<int> nuts = CountNuts();
     for (Mate& mate : product_->mates) {
@@ -359,7 +374,7 @@ class Inference {
         mate.fit = ProposeFit(evidence);
         const double offset = CalcOffset(*product_, mate);
         if (offset > limits_.axis_distance) {
-          mate.fit->reason += fmt::format(", {:.3f} mm off its axis", units::ToMm(offset));
+          mate.fit->reason += DescribeOffset(mate, offset);
         }
       }
     }

@@ -22,13 +22,13 @@ using product::PolygonForm;
 using product::PolygonKind;
 using product::Product;
 
-constexpr double kTolerance = 2e-6;     // [m]: that of a part's features.
-constexpr double kOffAxis = 50e-6;      // [m] beside the play: what is drawn inexactly. A choice.
-constexpr double kTightest = 0.1e-3;    // [m] by which the inner one may be wider: a press fit.
-constexpr double kWidestPlay = 0.1;     // Of the width: printed pockets have 0.03. A choice.
-constexpr double kParallelForms = 5e-3;      // [rad]
-constexpr double kSameTurn = 0.05;      // [rad] by which flats may be turned to each other: 3 deg.
-constexpr double kLeastEngaged = 0.05;  // Of the width: a choice.
+constexpr double kTolerance = 2e-6;      // [m]: that of a part's features.
+constexpr double kOffAxis = 50e-6;       // [m] beside the play: what is drawn inexactly. A choice.
+constexpr double kTightest = 0.1e-3;     // [m] by which the inner one may be wider: a press fit.
+constexpr double kWidestPlay = 0.1;      // Of the width: printed pockets have 0.03. A choice.
+constexpr double kParallelForms = 5e-3;  // [rad]
+constexpr double kSameTurn = 0.05;       // [rad] by which flats may be turned to each other: 3 deg.
+constexpr double kLeastEngaged = 0.05;   // Of the width: a choice.
 
 /** Polygons of the parts, each looked for once. */
 class PartPolygons {
@@ -145,10 +145,10 @@ std::vector<PolygonFit> FindPolygonFits(const Product& product, WorkWatch* watch
   const auto fill = [&](OccurrenceId outer, OccurrenceId inner) {
     for (PolygonFit& fit : of_outer[outer.index()]) {
       for (const PolygonForm& form : polygons.Of(product.part_of(inner).id)) {
-        const double engaged =
-            form.is_recess ? 0.0
-                           : CalcEngaged(fit.form, product.occurrences[outer.index()].X_WB, form,
-                                         product.occurrences[inner.index()].X_WB);
+        const double engaged = form.is_recess
+                                   ? 0.0
+                                   : CalcEngaged(fit.form, product.occurrences[outer.index()].X_WB,
+                                                 form, product.occurrences[inner.index()].X_WB);
         if (engaged > fit.engaged) {
           fit.inner = inner;
           fit.inner_width = form.width;

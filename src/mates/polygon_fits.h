@@ -14,11 +14,11 @@ namespace hvas::mates {
 /** A pocket or bore with flats around an axis, and the part whose flats are in it. */
 struct PolygonFit {
   product::OccurrenceId outer;
-  product::PolygonForm form;                       ///< Of the outer part, in its frame.
+  product::PolygonForm form;                   ///< Form of the outer part, in its frame.
   std::optional<product::OccurrenceId> inner;  ///< None where no part of the product is in it.
   double inner_width{0};                       ///< [m]; 0 without an inner part.
   double engaged{0};                           ///< Length along the axis that both have [m].
-  std::vector<product::MateId> mates;  ///< Prismatic mates of the two parts on these flats.
+  std::vector<product::MateId> mates;          ///< Prismatic mates of the two parts on these flats.
 };
 
 /** Finds them by the polygons of the parts: hexagonal pockets for nuts, square, hexagonal and D

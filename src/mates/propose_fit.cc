@@ -111,8 +111,8 @@ const fits::Thread* FindDrawnThread(const FitEvidence& evidence) {
   constexpr double kLeastTurns = 2;  // Fewer hold nothing, and are there by chance: a choice.
   const fits::Thread* thread =
       fits::FindThreadOfPair(2 * evidence.hole_radius, 2 * evidence.shaft_radius);
-  const bool is_long = thread != nullptr && (evidence.engaged == 0 ||
-                                             evidence.engaged >= kLeastTurns * thread->pitch);
+  const bool is_long = thread != nullptr &&
+                       (evidence.engaged == 0 || evidence.engaged >= kLeastTurns * thread->pitch);
   return is_long ? thread : nullptr;
 }
 

@@ -41,12 +41,11 @@ struct FitEvidence {
  | play of a proposed code, or less | nut or insert as the shaft | insert |
  | more play than the widest code | a shaft that may pass | passage |
  | hole not smaller | a rivet or a screw that may pass | passage |
- | core and outer diameter of a thread, over two turns | any but pins and bearings by their names | thread |
- | interference of a thread's depth, d <= 12 mm | hollow shaft | insert |
- | interference of a thread's depth, d <= 12 mm | any but pins and bearings by their names | thread |
- | interference above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 |
- | equal within 1 um | any | H7/g6 |
- | clearance | any | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
+ | core and outer diameter of a thread, over two turns | any but pins and bearings by their names |
+ thread | | interference of a thread's depth, d <= 12 mm | hollow shaft | insert | | interference of
+ a thread's depth, d <= 12 mm | any but pins and bearings by their names | thread | | interference
+ above 1 um (radius) | none | the lightest press fit of H7/p6, r6, s6 | | equal within 1 um | any |
+ H7/g6 | | clearance | any | the tightest of H7/g6, H8/f7, H9/d9, H11/c11 that may have it |
 
  Core and outer diameter are those of `fits::FindThreadOfPair`. An interference is of a thread's
  depth above 1.5 % of d and a fourth of that size's thread, or 10 %

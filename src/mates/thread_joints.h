@@ -41,9 +41,9 @@ struct ThreadJoint {
 
 /** The threaded joints among the mates, in the order of the mates. The size of the thread is what
  the name of the screw or nut states, else the pitch of modelled helical faces and the table's
- diameter for the shaft, else the one whose core and outer diameter hole and shaft are, else the coarse
- one for the drawn diameter of the shaft, else for that of the hole. A screw is self-tapping where its name says so, or where the hole is in a part of
- plastic. */
+ diameter for the shaft, else the one whose core and outer diameter hole and shaft are, else the
+ coarse one for the drawn diameter of the shaft, else for that of the hole. A screw is self-tapping
+ where its name says so, or where the hole is in a part of plastic. */
 [[nodiscard]] std::vector<ThreadJoint> FindThreadJoints(const product::Product& product);
 
 [[nodiscard]] const char* ToString(ThreadJointKind kind);

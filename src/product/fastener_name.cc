@@ -36,36 +36,44 @@ bool HasThreadSize(std::string_view text) {
 }
 
 // Numbers of standards of screws, bolts, studs and threaded rods, and of nuts, ascending.
+// DIN: screws.
 constexpr std::array<int, 84> kDinScrews{
-    84, 85, 186, 188, 261, 316, 404, 417, 427, 438, 444, 464, 478, 479, 480, 529, 551, 553, 561,
-    564, 571, 580, 601, 603, 604, 605, 607, 608, 609, 610, 653, 835, 906, 908, 910, 912, 913, 914,
-    915, 916, 920, 921, 923, 927, 931, 933, 938, 939, 940, 960, 961, 963, 964, 965, 966, 975, 976,
-    6900, 6912, 6914, 6921, 7500, 7504, 7505, 7513, 7516, 7964, 7968, 7969, 7971, 7972, 7973, 7976,
-    7981, 7982, 7983, 7984, 7985, 7990, 7991, 7996, 7997, 7999, 15237};
+    84,   85,   186,  188,  261,  316,  404,  417,  427,  438,  444,  464,  478,  479,
+    480,  529,  551,  553,  561,  564,  571,  580,  601,  603,  604,  605,  607,  608,
+    609,  610,  653,  835,  906,  908,  910,  912,  913,  914,  915,  916,  920,  921,
+    923,  927,  931,  933,  938,  939,  940,  960,  961,  963,  964,  965,  966,  975,
+    976,  6900, 6912, 6914, 6921, 7500, 7504, 7505, 7513, 7516, 7964, 7968, 7969, 7971,
+    7972, 7973, 7976, 7981, 7982, 7983, 7984, 7985, 7990, 7991, 7996, 7997, 7999, 15237};
+// DIN: nuts.
 constexpr std::array<int, 44> kDinNuts{
-    315, 431, 439, 466, 467, 508, 546, 547, 548, 555, 557, 562, 582, 917, 928, 929, 934, 935, 936,
-    937, 970, 971, 972, 979, 980, 981, 982, 985, 986, 1587, 1804, 1816, 6303, 6330, 6331, 6334,
-    6915, 6923, 6924, 6925, 6926, 6927, 70852, 80705};
+    315,  431,  439,  466,  467,  508,  546,  547,  548,  555,  557,  562,  582,   917,  928,
+    929,  934,  935,  936,  937,  970,  971,  972,  979,  980,  981,  982,  985,   986,  1587,
+    1804, 1816, 6303, 6330, 6331, 6334, 6915, 6923, 6924, 6925, 6926, 6927, 70852, 80705};
+// ISO: screws.
 constexpr std::array<int, 56> kIsoScrews{
-    1207, 1479, 1481, 1482, 1483, 1580, 2009, 2010, 2342, 3266, 4014, 4015, 4016, 4017, 4018, 4026,
-    4027, 4028, 4029, 4162, 4753, 4762, 4766, 7045, 7046, 7047, 7048, 7049, 7050, 7051, 7053, 7379,
-    7380, 7411, 7412, 7434, 7435, 7436, 8676, 8677, 8678, 8765, 10642, 14579, 14580, 14581, 14582,
-    14583, 14584, 14585, 14586, 14587, 15480, 15481, 15482, 15483};
+    1207,  1479,  1481,  1482,  1483,  1580,  2009,  2010,  2342,  3266,  4014,  4015,
+    4016,  4017,  4018,  4026,  4027,  4028,  4029,  4162,  4753,  4762,  4766,  7045,
+    7046,  7047,  7048,  7049,  7050,  7051,  7053,  7379,  7380,  7411,  7412,  7434,
+    7435,  7436,  8676,  8677,  8678,  8765,  10642, 14579, 14580, 14581, 14582, 14583,
+    14584, 14585, 14586, 14587, 15480, 15481, 15482, 15483};
+// ISO: nuts.
 constexpr std::array<int, 29> kIsoNuts{
-    299, 4032, 4033, 4034, 4035, 4036, 4161, 7040, 7041, 7042, 7043, 7044, 7413, 7414, 7417, 7418,
-    7419, 7719, 7720, 7721, 8673, 8674, 8675, 10511, 10512, 10513, 10663, 12125, 12126};
-constexpr std::array<int, 2> kEnScrews{
-    1662, 1665};
-constexpr std::array<int, 5> kEnNuts{
-    1661, 1663, 1664, 1666, 1667};
-constexpr std::array<int, 5> kJisScrews{
-    1111, 1176, 1177, 1180, 1189};
-constexpr std::array<int, 4> kJisNuts{
-    1163, 1181, 1183, 1185};
-constexpr std::array<int, 18> kGbScrews{
-    65, 67, 68, 69, 70, 77, 78, 79, 80, 818, 819, 820, 845, 846, 5780, 5781, 5782, 5783};
-constexpr std::array<int, 16> kGbNuts{
-    41, 56, 62, 802, 889, 923, 6170, 6171, 6172, 6173, 6174, 6175, 6177, 6178, 6182, 6184};
+    299,  4032, 4033, 4034, 4035, 4036, 4161, 7040, 7041,  7042,  7043,  7044,  7413,  7414, 7417,
+    7418, 7419, 7719, 7720, 7721, 8673, 8674, 8675, 10511, 10512, 10513, 10663, 12125, 12126};
+// EN: screws.
+constexpr std::array<int, 2> kEnScrews{1662, 1665};
+// EN: nuts.
+constexpr std::array<int, 5> kEnNuts{1661, 1663, 1664, 1666, 1667};
+// JIS B: screws.
+constexpr std::array<int, 5> kJisScrews{1111, 1176, 1177, 1180, 1189};
+// JIS B: nuts.
+constexpr std::array<int, 4> kJisNuts{1163, 1181, 1183, 1185};
+// GB: screws.
+constexpr std::array<int, 18> kGbScrews{65,  67,  68,  69,  70,  77,   78,   79,   80,
+                                        818, 819, 820, 845, 846, 5780, 5781, 5782, 5783};
+// GB: nuts.
+constexpr std::array<int, 16> kGbNuts{41,   56,   62,   802,  889,  923,  6170, 6171,
+                                      6172, 6173, 6174, 6175, 6177, 6178, 6182, 6184};
 
 /** The standards of one body. */
 struct Standards {
@@ -76,7 +84,7 @@ struct Standards {
 
 constexpr std::array kStandards{
     Standards{"din", kDinScrews, kDinNuts}, Standards{"iso", kIsoScrews, kIsoNuts},
-    Standards{"en", kEnScrews, kEnNuts},    Standards{"jis", kJisScrews, kJisNuts},
+    Standards{"en", kEnScrews, kEnNuts}, Standards{"jis", kJisScrews, kJisNuts},
     Standards{"gb", kGbScrews, kGbNuts}};
 
 /** What a standard of the B18 series of ANSI and ASME is of, by the numbers behind: B18.2.4.1M. */
@@ -91,13 +99,13 @@ FastenerKind ClassifyB18(int part, int section) {
 
 /** The number that a word is; 0 for all others. */
 int ReadNumberWord(const std::vector<Word>& words, std::size_t at) {
-  constexpr std::size_t kMostDigits = 6;
-  const bool is_number = at < words.size() && IsDigit(words[at].text.front()) &&
-                         words[at].text.size() <= kMostDigits;
+  constexpr std::size_t kMostDigits = 6;  // Of a standard; GB has up to five. A choice.
+  const bool is_number =
+      at < words.size() && IsDigit(words[at].text.front()) && words[at].text.size() <= kMostDigits;
   return is_number ? std::stoi(words[at].text) : 0;
 }
 
-/** What a name is by the standard that it states: "DIN 315", "ISO4762", "GB/T 6170", "ANSI
+/** What a name is by the standard that it states: "ISO4762", "DIN 934", "GB/T 6170", "ANSI
  B18.2.4.1M". */
 FastenerKind ClassifyStandard(const std::vector<Word>& words) {
   const auto has = [](std::span<const int> numbers, int number) {
@@ -126,18 +134,56 @@ FastenerKind ClassifyStandard(const std::vector<Word>& words) {
 }
 
 constexpr std::array<std::string_view, 24> kNutWords{
-    "nut", "locknut", "lock nut", "wingnut", "hexnut", "heat set", "helicoil", "rivnut", "tuerca",
-    "ecrou", "porca", "dado esagonale", "gewindeeinsatz", "gewindebuchse", "nutsert", "moer", "mutteri",
-    "matica", "nakretka", "gaika", "гайка", "Гайка", "螺母", "ナット"
-};
-constexpr std::array<std::string_view, 45> kScrewWords{
-    "screw", "bolt", "bhcs", "shcs", "fhcs", "stud", "hexbolt", "grub screw", "set screw",
-    "cap screw", "tornillo", "parafuso", "boulon", "bullone", "machinescrew",
-    "gewindestift", "gewindestange", "gewindebolzen", "threaded rod", "threadedrod", "allthread",
-    "tige filetee", "barra filettata", "varilla roscada", "barra roscada", "vite", "vis", "schroef",
-    "skruv", "skrue", "ruuvi", "sruba", "wkret", "sroub", "болт", "Болт", "винт", "Винт", "шпилька",
-    "Шпилька", "螺栓", "螺钉", "螺丝", "ボルト", "ねじ"
-};
+    "nut",      "locknut",        "lock nut",       "wingnut",       "hexnut",
+    "heat set", "helicoil",       "rivnut",         "tuerca",        "ecrou",
+    "porca",    "dado esagonale", "gewindeeinsatz", "gewindebuchse", "nutsert",
+    "moer",     "mutteri",        "matica",         "nakretka",      "gaika",
+    "гайка",    "Гайка",          "螺母",           "ナット"};
+constexpr std::array<std::string_view, 45> kScrewWords{"screw",
+                                                       "bolt",
+                                                       "bhcs",
+                                                       "shcs",
+                                                       "fhcs",
+                                                       "stud",
+                                                       "hexbolt",
+                                                       "grub screw",
+                                                       "set screw",
+                                                       "cap screw",
+                                                       "tornillo",
+                                                       "parafuso",
+                                                       "boulon",
+                                                       "bullone",
+                                                       "machinescrew",
+                                                       "gewindestift",
+                                                       "gewindestange",
+                                                       "gewindebolzen",
+                                                       "threaded rod",
+                                                       "threadedrod",
+                                                       "allthread",
+                                                       "tige filetee",
+                                                       "barra filettata",
+                                                       "varilla roscada",
+                                                       "barra roscada",
+                                                       "vite",
+                                                       "vis",
+                                                       "schroef",
+                                                       "skruv",
+                                                       "skrue",
+                                                       "ruuvi",
+                                                       "sruba",
+                                                       "wkret",
+                                                       "sroub",
+                                                       "болт",
+                                                       "Болт",
+                                                       "винт",
+                                                       "Винт",
+                                                       "шпилька",
+                                                       "Шпилька",
+                                                       "螺栓",
+                                                       "螺钉",
+                                                       "螺丝",
+                                                       "ボルト",
+                                                       "ねじ"};
 // German and Dutch compounds have the noun at their end: Zylinderschraube, Sechskantmutter.
 constexpr std::array<std::string_view, 3> kScrewEnds{"schraube", "schrauben", "schroef"};
 constexpr std::array<std::string_view, 3> kNutEnds{"mutter", "muttern", "moer"};
@@ -191,17 +237,16 @@ struct CoarsePitch {
 
 // ISO 261:1998, table 2, coarse pitches.
 constexpr std::array kCoarsePitches{
-    CoarsePitch{68, 6},     CoarsePitch{9, 1.25},   CoarsePitch{11, 1.5},
-    CoarsePitch{1, 0.25},   CoarsePitch{1.1, 0.25}, CoarsePitch{1.2, 0.25}, CoarsePitch{1.4, 0.3},
-    CoarsePitch{1.6, 0.35}, CoarsePitch{1.8, 0.35}, CoarsePitch{2, 0.4},    CoarsePitch{2.2, 0.45},
-    CoarsePitch{2.5, 0.45}, CoarsePitch{3, 0.5},    CoarsePitch{3.5, 0.6},  CoarsePitch{4, 0.7},
-    CoarsePitch{4.5, 0.75}, CoarsePitch{5, 0.8},    CoarsePitch{6, 1},      CoarsePitch{7, 1},
-    CoarsePitch{8, 1.25},   CoarsePitch{10, 1.5},   CoarsePitch{12, 1.75},  CoarsePitch{14, 2},
-    CoarsePitch{16, 2},     CoarsePitch{18, 2.5},   CoarsePitch{20, 2.5},   CoarsePitch{22, 2.5},
-    CoarsePitch{24, 3},     CoarsePitch{27, 3},     CoarsePitch{30, 3.5},   CoarsePitch{33, 3.5},
-    CoarsePitch{36, 4},     CoarsePitch{39, 4},     CoarsePitch{42, 4.5},   CoarsePitch{45, 4.5},
-    CoarsePitch{48, 5},     CoarsePitch{52, 5},     CoarsePitch{56, 5.5},   CoarsePitch{60, 5.5},
-    CoarsePitch{64, 6}};
+    CoarsePitch{68, 6},     CoarsePitch{9, 1.25},   CoarsePitch{11, 1.5},   CoarsePitch{1, 0.25},
+    CoarsePitch{1.1, 0.25}, CoarsePitch{1.2, 0.25}, CoarsePitch{1.4, 0.3},  CoarsePitch{1.6, 0.35},
+    CoarsePitch{1.8, 0.35}, CoarsePitch{2, 0.4},    CoarsePitch{2.2, 0.45}, CoarsePitch{2.5, 0.45},
+    CoarsePitch{3, 0.5},    CoarsePitch{3.5, 0.6},  CoarsePitch{4, 0.7},    CoarsePitch{4.5, 0.75},
+    CoarsePitch{5, 0.8},    CoarsePitch{6, 1},      CoarsePitch{7, 1},      CoarsePitch{8, 1.25},
+    CoarsePitch{10, 1.5},   CoarsePitch{12, 1.75},  CoarsePitch{14, 2},     CoarsePitch{16, 2},
+    CoarsePitch{18, 2.5},   CoarsePitch{20, 2.5},   CoarsePitch{22, 2.5},   CoarsePitch{24, 3},
+    CoarsePitch{27, 3},     CoarsePitch{30, 3.5},   CoarsePitch{33, 3.5},   CoarsePitch{36, 4},
+    CoarsePitch{39, 4},     CoarsePitch{42, 4.5},   CoarsePitch{45, 4.5},   CoarsePitch{48, 5},
+    CoarsePitch{52, 5},     CoarsePitch{56, 5.5},   CoarsePitch{60, 5.5},   CoarsePitch{64, 6}};
 
 struct InchThread {
   std::string_view size;
@@ -210,18 +255,18 @@ struct InchThread {
 };
 
 constexpr std::array kInchThreads{
-    InchThread{"0", 0.06, {80, 80}},      InchThread{"1", 0.073, {64, 72}},
-    InchThread{"2", 0.086, {56, 64}},     InchThread{"3", 0.099, {48, 56}},     InchThread{"4", 0.112, {40, 48}},
-    InchThread{"5", 0.125, {40, 44}},     InchThread{"6", 0.138, {32, 40}},
-    InchThread{"8", 0.164, {32, 36}},     InchThread{"10", 0.19, {24, 32}},
-    InchThread{"12", 0.216, {24, 28}},    InchThread{"1/4", 0.25, {20, 28}},
-    InchThread{"5/16", 0.3125, {18, 24}}, InchThread{"3/8", 0.375, {16, 24}},
-    InchThread{"7/16", 0.4375, {14, 20}}, InchThread{"1/2", 0.5, {13, 20}},
-    InchThread{"9/16", 0.5625, {12, 18}}, InchThread{"5/8", 0.625, {11, 18}},
-    InchThread{"3/4", 0.75, {10, 16}},    InchThread{"7/8", 0.875, {9, 14}},
-    InchThread{"1", 1, {8, 12}},          InchThread{"1 1/8", 1.125, {7, 12}},
-    InchThread{"1 1/4", 1.25, {7, 12}},   InchThread{"1 3/8", 1.375, {6, 12}},
-    InchThread{"1 1/2", 1.5, {6, 12}}};
+    InchThread{"0", 0.06, {80, 80}},     InchThread{"1", 0.073, {64, 72}},
+    InchThread{"2", 0.086, {56, 64}},    InchThread{"3", 0.099, {48, 56}},
+    InchThread{"4", 0.112, {40, 48}},    InchThread{"5", 0.125, {40, 44}},
+    InchThread{"6", 0.138, {32, 40}},    InchThread{"8", 0.164, {32, 36}},
+    InchThread{"10", 0.19, {24, 32}},    InchThread{"12", 0.216, {24, 28}},
+    InchThread{"1/4", 0.25, {20, 28}},   InchThread{"5/16", 0.3125, {18, 24}},
+    InchThread{"3/8", 0.375, {16, 24}},  InchThread{"7/16", 0.4375, {14, 20}},
+    InchThread{"1/2", 0.5, {13, 20}},    InchThread{"9/16", 0.5625, {12, 18}},
+    InchThread{"5/8", 0.625, {11, 18}},  InchThread{"3/4", 0.75, {10, 16}},
+    InchThread{"7/8", 0.875, {9, 14}},   InchThread{"1", 1, {8, 12}},
+    InchThread{"1 1/8", 1.125, {7, 12}}, InchThread{"1 1/4", 1.25, {7, 12}},
+    InchThread{"1 3/8", 1.375, {6, 12}}, InchThread{"1 1/2", 1.5, {6, 12}}};
 
 /** Reads digits with at most one point, or comma, "2.5"; moves `at` past them. */
 std::optional<double> ReadNumber(std::string_view text, std::size_t* at) {
@@ -305,9 +350,8 @@ std::optional<ThreadSize> ParseInch(std::string_view folded) {
       const std::string number = std::to_string(count);
       const std::string dashed = std::string(thread.size) + "-" + number;
       // "3/8 16 UNC": without a dash the series has to be there.
-      for (const std::string& word :
-           {dashed, std::string(thread.size) + " " + number + " un",
-            std::string(thread.size) + " " + number + "un"}) {
+      for (const std::string& word : {dashed, std::string(thread.size) + " " + number + " un",
+                                      std::string(thread.size) + " " + number + "un"}) {
         const std::size_t at = text.find(word);
         const std::size_t end = at + word.size();
         if (at != std::string::npos && (at == 0 || !is_part(text[at - 1])) &&

@@ -97,15 +97,14 @@ void CloseFloor(const Part& part, PolygonForm* polygon) {
 
 /** Completes a polygon whose kind, sense, width, flats and number of sides are there. */
 std::optional<PolygonForm> Complete(const Part& part, PolygonForm polygon, const Vec3& origin,
-                                const Vec3& axis, const FlatExtent& along) {
+                                    const Vec3& axis, const FlatExtent& along) {
   if (along.length() < kLeastDepth * polygon.width) {
     return std::nullopt;
   }
   std::sort(polygon.faces.begin(), polygon.faces.end());
   polygon.flat_B = part.faces[polygon.faces.front().index()].surface.axis;
   const double across = std::max(polygon.width, polygon.diameter);
-  const auto end =
-      FindOpenEnd(part, polygon.faces, polygon.is_recess, across, origin, axis, along);
+  const auto end = FindOpenEnd(part, polygon.faces, polygon.is_recess, across, origin, axis, along);
   if (!end) {
     return std::nullopt;
   }
@@ -129,7 +128,7 @@ void Narrow(const FlatExtent& extent, FlatExtent* along) {
 
 /** The regular polygon of pairs of flats, where they make one. */
 std::optional<PolygonForm> MakeRegular(const Part& part, const std::vector<const FlatPair*>& pairs,
-                                   double tolerance) {
+                                       double tolerance) {
   const FlatPair& p = *pairs[0];
   const Vec3 axis = Canonical(p.a->normal.cross(pairs[1]->a->normal).normalized());
   const Vec3 origin = CalcLinePoint(p, *pairs[1], p.a->centre);
@@ -171,7 +170,8 @@ bool DoBelong(const FlatPair& p, const FlatPair& q, int sides) {
          angle < std::numbers::pi - 0.5 * corner;
 }
 
-/** Adds the polygons with `left` more pairs of flats than the chosen ones, from number `from` on. */
+/** Adds the polygons with `left` more pairs of flats than the chosen ones, from number `from` on.
+ */
 void AddRegular(const Part& part, const std::vector<FlatPair>& pairs, std::size_t from, int sides,
                 double tolerance, std::vector<const FlatPair*>* chosen,
                 std::vector<PolygonForm>* found) {
@@ -197,8 +197,9 @@ void AddRegular(const Part& part, const std::vector<FlatPair>& pairs, std::size_
 struct SideFlat {
   FaceId face;
   Vec3 normal;
-  double distance;  ///< Signed distance of its plane from the axis; positive: it looks away from it.
-  FlatExtent side;  ///< Extent along the flat, across the axis, from the axis.
+  double
+      distance;  ///< Signed distance of its plane from the axis; positive: it looks away from it.
+  FlatExtent side;   ///< Extent along the flat, across the axis, from the axis.
   FlatExtent along;  ///< Extent along the axis.
 
   [[nodiscard]] double middle() const { return 0.5 * (side.low + side.high); }
@@ -249,7 +250,7 @@ bool IsChord(const SideFlat& flat, double radius) {
 
 /** D and double D about a hole or shaft. */
 std::optional<PolygonForm> FindFlatted(const Part& part, const Feature& feature,
-                                   const AxisFlats& around, double tolerance) {
+                                       const AxisFlats& around, double tolerance) {
   std::vector<const SideFlat*> chords;
   for (const SideFlat& flat : around.flats) {
     if ((flat.distance < 0) == (feature.kind == FeatureKind::kHole) &&
@@ -291,9 +292,10 @@ bool AreEven(const std::vector<double>& angles, int n) {
 
 /** The spline whose teeth are so wide, about a hole or shaft. */
 std::optional<PolygonForm> MakeSpline(const Part& part, const Feature& feature,
-                                  const AxisFlats& around, double half_width, double tolerance) {
+                                      const AxisFlats& around, double half_width,
+                                      double tolerance) {
   constexpr std::size_t kLeastSplineTeeth = 4;  // Fewer are keys. A choice.
-  constexpr double kFarOut = 0.4;         // Of the radius: where flanks have their middle at least.
+  constexpr double kFarOut = 0.4;  // Of the radius: where flanks have their middle at least.
   PolygonForm polygon;
   polygon.kind = PolygonKind::kSpline;
   polygon.is_recess = feature.kind == FeatureKind::kHole;
@@ -315,15 +317,15 @@ std::optional<PolygonForm> MakeSpline(const Part& part, const Feature& feature,
     Narrow(flat.along, &along);
   }
   polygon.sides = static_cast<int>(left.size());
-  if (left.size() < kLeastSplineTeeth || left.size() != right.size() || !AreEven(left, polygon.sides) ||
-      !AreEven(right, polygon.sides)) {
+  if (left.size() < kLeastSplineTeeth || left.size() != right.size() ||
+      !AreEven(left, polygon.sides) || !AreEven(right, polygon.sides)) {
     return std::nullopt;
   }
   return Complete(part, std::move(polygon), around.origin, around.axis, along);
 }
 
 std::optional<PolygonForm> FindSpline(const Part& part, const Feature& feature,
-                                  const AxisFlats& around, double tolerance) {
+                                      const AxisFlats& around, double tolerance) {
   constexpr double kWidest = 0.6;  // Half a tooth's width, of the radius. A choice.
   std::vector<double> tried;
   for (const SideFlat& flat : around.flats) {
@@ -351,7 +353,7 @@ void Sort(std::vector<PolygonForm>* found) {
 }
 
 std::vector<PolygonForm> FindRegularAmong(const Part& part, const std::vector<FlatPair>& pairs,
-                                      int sides, double tolerance) {
+                                          int sides, double tolerance) {
   std::vector<PolygonForm> found;
   std::vector<const FlatPair*> chosen;
   AddRegular(part, pairs, 0, sides, tolerance, &chosen, &found);
@@ -361,7 +363,7 @@ std::vector<PolygonForm> FindRegularAmong(const Part& part, const std::vector<Fl
 }  // namespace
 
 std::vector<PolygonForm> FindRegularPolygons(const Part& part, int sides, double tolerance,
-                                         RecognitionLimits* limits) {
+                                             RecognitionLimits* limits) {
   const std::vector<Flat> flats = CollectFlats(part, limits);
   std::vector<PolygonForm> found =
       FindRegularAmong(part, CollectFlatPairs(flats, limits), sides, tolerance);
@@ -369,7 +371,8 @@ std::vector<PolygonForm> FindRegularPolygons(const Part& part, int sides, double
   return found;
 }
 
-std::vector<PolygonForm> FindPolygons(const Part& part, double tolerance, RecognitionLimits* limits) {
+std::vector<PolygonForm> FindPolygons(const Part& part, double tolerance,
+                                      RecognitionLimits* limits) {
   const std::vector<Flat> flats = CollectFlats(part, limits);
   const std::vector<FlatPair> pairs = CollectFlatPairs(flats, limits);
   std::vector<PolygonForm> found;

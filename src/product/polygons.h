@@ -27,7 +27,7 @@ struct PolygonForm {
   Vec3 flat_B{Vec3::UnitX()};   ///< Unit, outward normal of the material of one of the flats.
   double width{0};     ///< Distance of opposite flats; D: of the flat from the round behind it;
                        ///< spline: width of a tooth [m].
-  double diameter{0};  ///< Of the round of flatted and splined ones [m]; else 0.
+  double diameter{0};  ///< Diameter of the round of flatted and splined ones [m]; else 0.
   double depth{0};     ///< Length along the axis that all flats have [m].
   std::vector<FaceId> faces;  ///< The flats, ascending.
 };
@@ -37,10 +37,11 @@ struct PolygonForm {
  limits that were reached. @pre `features` of the part are there. Deterministic; in the order of
  their first face. */
 [[nodiscard]] std::vector<PolygonForm> FindPolygons(const Part& part, double tolerance,
-                                                RecognitionLimits* limits);
+                                                    RecognitionLimits* limits);
 
 /** Finds the regular ones alone, with this even number of sides. */
 [[nodiscard]] std::vector<PolygonForm> FindRegularPolygons(const Part& part, int sides,
-                                                       double tolerance, RecognitionLimits* limits);
+                                                           double tolerance,
+                                                           RecognitionLimits* limits);
 
 }  // namespace hvas::product

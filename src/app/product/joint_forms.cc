@@ -125,7 +125,8 @@ std::vector<PolygonFit> ListPolygons(const Product& product, const Selection& se
   return fits;
 }
 
-/** What the walls of a mate are of: of a slot where they are of no pocket or bore around an axis. */
+/** What the walls of a mate are of: of a slot where they are of no pocket or bore around an axis.
+ */
 std::string DescribeForm(const std::vector<PolygonFit>& polygons, const Mate& mate) {
   const auto found = std::find_if(polygons.begin(), polygons.end(), [&](const PolygonFit& fit) {
     return std::find(fit.mates.begin(), fit.mates.end(), mate.id) != fit.mates.end();
@@ -136,24 +137,24 @@ std::string DescribeForm(const std::vector<PolygonFit>& polygons, const Mate& ma
 /** A pocket or bore that no mate of two walls stands for: its part alone is in it, or flats that
  have none opposite, as those of a D. */
 Json ToJson(const Product& product, const PolygonFit& fit) {
-  const Vec3 way_W =
-      -(product.occurrences[fit.outer.index()].X_WB.q() * fit.form.axis_B);
+  const Vec3 way_W = -(product.occurrences[fit.outer.index()].X_WB.q() * fit.form.axis_B);
   const auto of_inner = [&fit](double value) { return fit.inner ? Json(value) : Json(); };
-  return {{"mate", Json()},
-          {"form", mates::DescribePolygon(fit.form)},
-          {"outer", fit.outer.value()},
-          {"inner", fit.inner ? Json(fit.inner->value()) : Json()},
-          {"way_out", {way_W.x(), way_W.y(), way_W.z()}},
-          {"outer_width_mm", ToMm(fit.form.width)},
-          {"inner_width_mm", of_inner(ToMm(fit.inner_width))},
-          {"clearance_mm", of_inner(ToMm(fit.form.width - fit.inner_width))},
-          {"engaged_mm", ToMm(fit.engaged)},
-          {"breadth_mm", Json()},
-          {"lead_in_deg", Json()},
-          {"lead_in_mm", Json()},
-          {"kind", Json()},
-          {"code", ""},
-          {"reason", fit.inner ? "the flats turn with each other" : "no part of the product is in it"}};
+  return {
+      {"mate", Json()},
+      {"form", mates::DescribePolygon(fit.form)},
+      {"outer", fit.outer.value()},
+      {"inner", fit.inner ? Json(fit.inner->value()) : Json()},
+      {"way_out", {way_W.x(), way_W.y(), way_W.z()}},
+      {"outer_width_mm", ToMm(fit.form.width)},
+      {"inner_width_mm", of_inner(ToMm(fit.inner_width))},
+      {"clearance_mm", of_inner(ToMm(fit.form.width - fit.inner_width))},
+      {"engaged_mm", ToMm(fit.engaged)},
+      {"breadth_mm", Json()},
+      {"lead_in_deg", Json()},
+      {"lead_in_mm", Json()},
+      {"kind", Json()},
+      {"code", ""},
+      {"reason", fit.inner ? "the flats turn with each other" : "no part of the product is in it"}};
 }
 
 Json ToJson(const Product& product, const std::vector<PolygonFit>& polygons, const Mate& mate) {

@@ -272,9 +272,10 @@ void DocumentBuilder::ReportOpen(const SewnFaces& sewn, const std::vector<TopoDS
   entries.resize(entries.size() - more);
   diagnostics_->Warn(
       "open-faces", name.empty() ? file_ : name,
-      fmt::format("surfaces do not close to a solid: {} edges have no neighbour within {:g} mm{}{}{}",
-                  sewn.open_edges, sewn.tolerance_mm, entries.empty() ? "" : "; entities ",
-                  fmt::join(entries, ", "), more > 0 ? fmt::format(" and {} more", more) : ""),
+      fmt::format(
+          "surfaces do not close to a solid: {} edges have no neighbour within {:g} mm{}{}{}",
+          sewn.open_edges, sewn.tolerance_mm, entries.empty() ? "" : "; entities ",
+          fmt::join(entries, ", "), more > 0 ? fmt::format(" and {} more", more) : ""),
       "export the part as a solid (IGES type 186), or as STEP");
 }
 
@@ -285,9 +286,9 @@ void DocumentBuilder::ReportOpenSolid(const TopoDS_Shape& solid, const std::stri
   TopExp::MapShapesAndAncestors(solid, TopAbs_EDGE, TopAbs_FACE, faces_of);
   for (int i = 1; i <= faces_of.Extent(); ++i) {
     const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(i));
-    const bool is_alone = faces_of.FindFromIndex(i).Extent() == 1 &&
-                          !BRep_Tool::IsClosed(
-                              edge, TopoDS::Face(faces_of.FindFromIndex(i).First()));
+    const bool is_alone =
+        faces_of.FindFromIndex(i).Extent() == 1 &&
+        !BRep_Tool::IsClosed(edge, TopoDS::Face(faces_of.FindFromIndex(i).First()));
     open_edges += is_alone && !BRep_Tool::Degenerated(edge) ? 1 : 0;
   }
   if (open_edges > 0) {

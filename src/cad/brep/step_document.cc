@@ -132,8 +132,8 @@ void ReportMissingFiles(const STEPCAFControl_Reader& reader, Diagnostics* diagno
       NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>;
   for (ExternFiles::Iterator it(reader.ExternFiles()); it.More(); it.Next()) {
     const Handle(STEPCAFControl_ExternFile)& file = it.Value();
-    const bool is_read = !file.IsNull() && file->GetLoadStatus() == IFSelect_RetDone &&
-                         file->GetTransferStatus();
+    const bool is_read =
+        !file.IsNull() && file->GetLoadStatus() == IFSelect_RetDone && file->GetTransferStatus();
     if (!is_read && of_parts.count(it.Key().ToCString()) == 0) {
       missing.emplace_back(it.Key().ToCString());
     }
@@ -277,8 +277,8 @@ IdentityFn IndexIdentities(const STEPCAFControl_Reader& reader, const StepText& 
   };
 }
 
-/** Makes parts of the solids of a file that has no PRODUCT, each with the name of its entity. Errors:
- kUnsupported for more than `most`; kUnreadable where there are no solids either. */
+/** Makes parts of the solids of a file that has no PRODUCT, each with the name of its entity.
+ Errors: kUnsupported for more than `most`; kUnreadable where there are no solids either. */
 Result<void> AddSolids(STEPCAFControl_Reader* reader, const std::string& file, std::size_t most,
                        const Handle(TDocStd_Document) & document, Diagnostics* diagnostics) {
   const Handle(StepData_StepModel) model = reader->Reader().StepModel();
@@ -314,8 +314,9 @@ Result<void> AddSolids(STEPCAFControl_Reader* reader, const std::string& file, s
     TDataStd_Name::Set(parts.back(), TCollection_ExtendedString(name.c_str(), Standard_True));
   }
   if (parts.empty()) {
-    return Fail(ErrorCode::kUnreadable, "the STEP file has no product and no solid that can be read",
-                file, "export the file again from the CAD system");
+    return Fail(ErrorCode::kUnreadable,
+                "the STEP file has no product and no solid that can be read", file,
+                "export the file again from the CAD system");
   }
   if (parts.size() > 1) {
     const TDF_Label root = shapes->NewShape();

@@ -275,9 +275,8 @@ void RewriteStatements(const std::filesystem::path& file,
 }
 
 bool HasAnyOf(const std::string& text, const std::vector<const char*>& words) {
-  return std::any_of(words.begin(), words.end(), [&text](const char* word) {
-    return text.find(word) != std::string::npos;
-  });
+  return std::any_of(words.begin(), words.end(),
+                     [&text](const char* word) { return text.find(word) != std::string::npos; });
 }
 
 TEST(ReadCad, ADocumentFromWhichAPartWasExportedIsNoMissingFile) {
@@ -319,9 +318,10 @@ TEST(ReadCad, SolidsWithoutAProductAreThePartsWithAWarning) {
     builder.Write(file, unit);
     int solids = 0;
     RewriteStatements(file, [&solids](std::string* statement) {
-      if (HasAnyOf(*statement, {"= PRODUCT", "=PRODUCT", "NEXT_ASSEMBLY", "SHAPE_REPRESENTATION_REL",
-                                "REPRESENTATION_RELATIONSHIP", "CONTEXT_DEPENDENT_SHAPE",
-                                "SHAPE_DEFINITION_REPRESENTATION", "APPLICATION_"})) {
+      if (HasAnyOf(*statement,
+                   {"= PRODUCT", "=PRODUCT", "NEXT_ASSEMBLY", "SHAPE_REPRESENTATION_REL",
+                    "REPRESENTATION_RELATIONSHIP", "CONTEXT_DEPENDENT_SHAPE",
+                    "SHAPE_DEFINITION_REPRESENTATION", "APPLICATION_"})) {
         statement->clear();
       }
       const std::size_t at = statement->find("MANIFOLD_SOLID_BREP('");

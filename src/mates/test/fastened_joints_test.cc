@@ -120,8 +120,8 @@ Product MakeStack(int plates, double bolt, double hole, double off, double tilt,
               0.5 * top, 0.5 * top + 0.8 * bolt);
   const PartId nut_part(product.parts.size() - 1);
   for (const Vec3& p : kSquare) {
-    const Pose X_WB = kPlace * Pose(Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY())),
-                                    Vec3(p.x(), p.y(), 0.5 * top));
+    const Pose X_WB =
+        kPlace * Pose(Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY())), Vec3(p.x(), p.y(), 0.5 * top));
     AddOccurrence(&product, bolt_part, X_WB);
     AddOccurrence(&product, nut_part, X_WB);
   }
@@ -143,9 +143,9 @@ TEST(FastenedJoints, BoltsOffTheAxesOfTheirHolesPassThemAndTheOffsetIsTold) {
     double bolt_mm, hole_mm, off_mm;
   };
 
-  for (const Case& c : {Case{2, 4, 4.5, 0.075}, Case{2, 4, 4.5, 0.24}, Case{3, 6, 6.6, 0.15},
-                        Case{4, 3, 3.4, 0.1}, Case{2, 12, 13.5, 0.4}, Case{2, 20, 22, 0.9},
-                        Case{2, 6.35, 7.1, 0.2}}) {
+  for (const Case& c :
+       {Case{2, 4, 4.5, 0.075}, Case{2, 4, 4.5, 0.24}, Case{3, 6, 6.6, 0.15}, Case{4, 3, 3.4, 0.1},
+        Case{2, 12, 13.5, 0.4}, Case{2, 20, 22, 0.9}, Case{2, 6.35, 7.1, 0.2}}) {
     SCOPED_TRACE(c.bolt_mm);
     const Product product = MakeStack(c.plates, 1e-3 * c.bolt_mm, 1e-3 * c.hole_mm, 1e-3 * c.off_mm,
                                       0, "bolt M4x20", "nut M4");

@@ -367,8 +367,8 @@ TEST(PitfallF, AHexagonWithAThreadInItsBoreIsANutAndOneWithAPlainBoreIsNot) {
     Product product;
     Part* nut = AddRound(&product, "part 1", FeatureKind::kHole, 4e-3, 0, 6.8e-3);
     AddHexagon(nut, 13e-3, 1, 0, 6.8e-3);
-    nut->features[0].thread = is_threaded ? product::ThreadKind::kNominal
-                                          : product::ThreadKind::kNone;
+    nut->features[0].thread =
+        is_threaded ? product::ThreadKind::kNominal : product::ThreadKind::kNone;
     AddRound(&product, "part 2", FeatureKind::kShaft, 4e-3, -5e-3, 15e-3);
     AddInPlace(&product);
     InferInto(&product);

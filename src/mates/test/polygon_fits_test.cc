@@ -58,8 +58,7 @@ TEST(PolygonFits, ABarOfAnyNumberOfSidesIsInTheBoreWithItsMates) {
   for (const int sides : {4, 6, 8}) {
     for (const double bore : {5e-3, 12.7e-3, 30e-3}) {
       SCOPED_TRACE(sides);
-      const auto fits =
-          FindPolygonFits(MakeBarInRing(sides, bore, bore - 0.05e-3, Vec3::Zero()));
+      const auto fits = FindPolygonFits(MakeBarInRing(sides, bore, bore - 0.05e-3, Vec3::Zero()));
       ASSERT_EQ(fits.size(), 1U);
       EXPECT_EQ(DescribePolygon(fits[0].form), names[sides / 2 - 2]);
       ASSERT_TRUE(fits[0].inner.has_value());

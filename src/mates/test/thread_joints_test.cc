@@ -107,8 +107,7 @@ TEST(ThreadJoints, TwoDiametersOfAnyThreadAreItWithoutANameAlsoWhereTheScrewIsHo
   for (const fits::Thread& thread : fits::ListThreads()) {
     SCOPED_TRACE(thread.designation);
     for (const double bore : {0.0, 0.6 * thread.diameter}) {
-      const auto joints =
-          FindIn(MakeNamelessPair(thread.minor_diameter(), thread.diameter, bore));
+      const auto joints = FindIn(MakeNamelessPair(thread.minor_diameter(), thread.diameter, bore));
       ASSERT_EQ(joints.size(), 1U);
       ASSERT_NE(joints[0].thread, nullptr);
       EXPECT_EQ(joints[0].thread->designation, thread.designation);

@@ -79,7 +79,8 @@ TEST(ParseThreadSize, ReadsInchSizesWithTheirThreadsPerInch) {
   ASSERT_TRUE(ten.has_value());
   EXPECT_NEAR(ten->diameter, 0.19 * 0.0254, 1e-9);
   EXPECT_NEAR(ten->pitch, 0.0254 / 32, 1e-9);
-  for (const char* name : {"1/4\"-20", "1/4 - 20 nut", "1/4 in - 20", "1/4 20 UNC", "1/4-20UNC-2A"}) {
+  for (const char* name :
+       {"1/4\"-20", "1/4 - 20 nut", "1/4 in - 20", "1/4 20 UNC", "1/4-20UNC-2A"}) {
     const auto size = ParseThreadSize(name);
     ASSERT_TRUE(size.has_value()) << name;
     EXPECT_NEAR(size->pitch, 0.00127, 1e-9) << name;
