@@ -86,7 +86,7 @@ bool ReadFlexible(const Json& json, product::Product* product) {
                           entry[0].get<std::uint64_t>() < product->occurrences.size() &&
                           entry[1].is_number() && entry[2].is_number_unsigned() &&
                           entry[2].get<std::uint64_t>() <=
-                              static_cast<std::uint64_t>(product::FlexibleKind::kLipSeal);
+                              static_cast<std::uint64_t>(product::kLastFlexibleKind);
     if (!is_entry) {
       return false;
     }

@@ -130,8 +130,10 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
                                                : std::vector{kWayLooks};
   for (const std::uint64_t most : tries) {
     const std::uint64_t budget = std::min(most, input_.way_looks);
-    const auto is_new = [&](OccurrenceId, const Search& before) {
-      return before.looks < budget || before.is_present != is_present_;
+    // What only lacks the room to bend is known to be stuck: it is not looked at for long.
+    const auto is_new = [&](OccurrenceId id, const Search& before) {
+      return (before.looks < budget || before.is_present != is_present_) &&
+             (effort == TurningEffort::kBrief || ExplainBending(id).empty());
     };
     if (auto step = TryRemoveTurning(rest, deferred, budget, is_new)) {
       return step;
@@ -147,10 +149,23 @@ std::optional<SequenceStep> Extraction::TryRemoveRing(Unit* rest, const Unit& de
   const auto is_ring = [&](OccurrenceId id, const Search& before) {
     const product::FlexiblePart* flexible = product::FindFlexible(product_, id);
     return before.looks == 0 && flexible != nullptr && flexible->allowance > 0 &&
-           flexible->kind != product::FlexibleKind::kStated &&
-           !product::ClassifyFlexibleByWords(product_.part_of(id));
+           flexible->kind == product::FlexibleKind::kORing &&
+           !product::IsRubber(product_.part_of(id).material);
   };
   return TryRemoveTurning(rest, deferred, std::min(kBriefLooks, input_.way_looks), is_ring);
+}
+
+std::optional<SequenceStep> Extraction::FindRigidWay(OccurrenceId id) {
+  const std::uint64_t budget = std::min(kBriefLooks, input_.way_looks);
+  SetPresent({id}, true);
+  const Search& before = searches_[id.index()];
+  const bool is_new = before.looks < budget || before.is_present != is_present_;
+  std::optional<SequenceStep> step;
+  if (!input_.shapes.empty() && budget > 0 && is_new && !IsHeldFirmly(id) && !IsSearchOver()) {
+    step = FindTurningWay(id, std::min(budget, kMostLooks - looks_));
+  }
+  SetPresent({id}, false);
+  return step;
 }
 
 std::string Extraction::ExplainTurning(OccurrenceId id) const {

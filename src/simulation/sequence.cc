@@ -183,8 +183,9 @@ bool Planner::TakeOutBody(BlockingGraph* graph, Unit* rest, std::vector<Sequence
 void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, Sequence* sequence) {
   const OccurrenceId blocker = graph->FindGreatestBlocker();
   const OccurrenceId id = blocker.is_valid() ? blocker : rest->front();
-  std::string reason =
-      extraction_.ExplainStuck(id) + extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
+  const std::string no_room = extraction_.ExplainBending(id);
+  std::string reason = (no_room.empty() ? extraction_.ExplainStuck(id) : no_room) +
+                       extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
   if (graph->is_limited()) {
     reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
                           BlockingGraph::kMostWays);
@@ -259,6 +260,10 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   if (TakeOutBody(&**graph, rest, removed, sequence)) {
     return;
   }
+  if (std::optional<SequenceStep> bending = extraction_.TryRemoveBending(rest, connecting)) {
+    removed->push_back(std::move(*bending));
+    return;
+  }
   if (std::optional<SequenceStep> turning =
           extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kBrief)) {
     removed->push_back(std::move(*turning));
@@ -272,10 +277,6 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   if (std::optional<SequenceStep> turning =
           extraction_.TryRemoveTurning(rest, connecting, TurningEffort::kLong)) {
     removed->push_back(std::move(*turning));
-    return;
-  }
-  if (std::optional<SequenceStep> bending = extraction_.TryRemoveBending(rest, connecting)) {
-    removed->push_back(std::move(*bending));
     return;
   }
   GiveUpOne(&**graph, rest, sequence);
