@@ -72,10 +72,12 @@ std::map<OccurrenceId, FlexiblePart> RecogniseFlexible(const Product& product, b
     }
     return parts;
   }
+
   struct Recognised {
     std::optional<FlexiblePart> by_form;
     std::optional<FlexiblePart> by_words;
   };
+
   std::map<PartId, Recognised> recognised;
   std::map<OccurrenceId, FlexiblePart> in_place;
   for (FlexiblePart& part : product::ListYieldingInPlace(product, watch)) {

@@ -95,10 +95,10 @@ constexpr SideFileKey Choice(std::string_view name, std::span<const std::string_
 }
 
 constexpr std::array kDocumentKeys{
-    Choice("format", kFormats, true),   Note(),
-    Of(Type::kList, "fits", false),     Of(Type::kList, "mates", false),
-    Of(Type::kList, "removed", false),  Of(Type::kList, "relations", false),
-    Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false),
+    Choice("format", kFormats, true),    Note(),
+    Of(Type::kList, "fits", false),      Of(Type::kList, "mates", false),
+    Of(Type::kList, "removed", false),   Of(Type::kList, "relations", false),
+    Of(Type::kList, "contacts", false),  Of(Type::kList, "apart", false),
     Of(Type::kList, "compliant", false), Of(Type::kList, "flexible", false),
     Of(Type::kList, "elastic", false)};
 
@@ -539,8 +539,8 @@ Result<StatedCompliant> ReadCompliant(const ordered_json& item, const Place& pla
   if (const auto allowance = NumberAt(item, kAllowanceKey, units::kMetresPerMillimetre)) {
     stated.flexible = StatedFlexible{TextAt(item, "part"), *allowance, place.Where()};
   }
-  const bool has_sizes = std::any_of(
-      kElasticKeys.begin(), kElasticKeys.end(), [&item](const SideFileKey& key) {
+  const bool has_sizes =
+      std::any_of(kElasticKeys.begin(), kElasticKeys.end(), [&item](const SideFileKey& key) {
         return key.name != "part" && key.name != "note" && item.contains(key.name);
       });
   if (has_sizes || !stated.flexible) {

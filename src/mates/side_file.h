@@ -118,8 +118,8 @@ struct StatedFlexible {
   std::string where;
 };
 
-/** "compliant", "elastic": what pushes back where another part presses on it, and how large it is. What is not
- stated is measured from the part. */
+/** "compliant", "elastic": what pushes back where another part presses on it, and how large it is.
+ What is not stated is measured from the part. */
 struct StatedElastic {
   std::string part;                          ///< Occurrences of this name or path.
   std::optional<product::ElasticKind> kind;  ///< Found from name and form where it is not stated.

@@ -8,7 +8,7 @@ namespace {
 constexpr double kPlasticStrain = 0.04;  // Bayer: polycarbonate, once.
 constexpr double kRubberStrain = 1;      // Rubber stretches by more than a hundred per cent.
 constexpr double kMetalRingStrain = 0.02;
-constexpr double kSoftestOfMetals = 20e9;     // [Pa]; filled plastics stay below. A choice.
+constexpr double kSoftestOfMetals = 20e9;  // [Pa]; filled plastics stay below. A choice.
 
 }  // namespace
 

@@ -14,11 +14,12 @@ namespace hvas::product {
 namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
-constexpr double kHighestRing = 0.3;         // Of the outer diameter; what is higher is a tube. A choice.
-constexpr double kNarrowestBore = 0.3;   // Of the outer radius; DIN 6799 has 0.36 on.
-constexpr double kLeastRingFilled = 2.0 / 3; // Of the rectangle of its section: round wire has pi / 4.
-constexpr double kMostRingFilled = 1.05;     // What the chords of a mesh make of a full one. A choice.
-constexpr double kLeastSplit = 10e-6;      // [m]; neighbouring faces of a mesh meet within less.
+constexpr double kHighestRing = 0.3;  // Of the outer diameter; what is higher is a tube. A choice.
+constexpr double kNarrowestBore = 0.3;  // Of the outer radius; DIN 6799 has 0.36 on.
+constexpr double kLeastRingFilled =
+    2.0 / 3;                              // Of the rectangle of its section: round wire has pi / 4.
+constexpr double kMostRingFilled = 1.05;  // What the chords of a mesh make of a full one. A choice.
+constexpr double kLeastSplit = 10e-6;     // [m]; neighbouring faces of a mesh meet within less.
 
 /** The axis with the largest moment of inertia; one of B's where it is nearly that. */
 Vec3 FindRingAxis(const Part& part) {
@@ -39,8 +40,8 @@ std::optional<Vec3> FindAxisPoint(const Part& part, Vec3* axis_B) {
   const Face* largest = nullptr;
   for (const Face& face : part.faces) {
     const SurfaceKind kind = face.surface.kind;
-    const bool is_round = kind == SurfaceKind::kCylinder || kind == SurfaceKind::kTorus ||
-                          kind == SurfaceKind::kCone;
+    const bool is_round =
+        kind == SurfaceKind::kCylinder || kind == SurfaceKind::kTorus || kind == SurfaceKind::kCone;
     if (is_round && std::abs(face.surface.axis.dot(*axis_B)) > kParallel &&
         (largest == nullptr || face.area > largest->area)) {
       largest = &face;

@@ -14,7 +14,7 @@
 namespace hvas::product {
 namespace {
 
-constexpr double kOffAxis = 0.3e-3;   // [m] that two axes may be apart as drawn. A choice.
+constexpr double kOffAxis = 0.3e-3;       // [m] that two axes may be apart as drawn. A choice.
 constexpr double kParallelAxes = 0.9998;  // Cosine: within 1.1 degrees. A choice.
 
 /** Distance of a point from a line [m]. @param axis  Unit. */
@@ -48,8 +48,7 @@ std::pair<double, double> MeasureAreas(const Part& part, const Vec3& axis_B) {
   double ends = 0;
   for (const auto& [a, b, c] : part.mesh.triangles) {
     const Vec3& p = part.mesh.vertices[a];
-    const Vec3 area =
-        0.5 * (part.mesh.vertices[b] - p).cross(part.mesh.vertices[c] - p);
+    const Vec3 area = 0.5 * (part.mesh.vertices[b] - p).cross(part.mesh.vertices[c] - p);
     const double along = std::abs(area.dot(axis_B));
     (along < kEnd * area.norm() ? sides : ends) += along < kEnd * area.norm() ? area.norm() : along;
   }
@@ -61,7 +60,7 @@ struct Candidate {
   OccurrenceId occurrence;
   std::optional<RingShape> ring;
   std::optional<BandShape> band;
-  double stretch{0};       // Ring: over the land of its groove [m].
+  double stretch{0};          // Ring: over the land of its groove [m].
   std::set<std::size_t> met;  // Band: arcs that go round a shaft.
 };
 

@@ -18,8 +18,8 @@ struct BandShape {
   double length{0};            ///< Of its middle line [m].
 };
 
-/** Measures a part as a thin band: as thick everywhere on average as its volume over its sides, with
- arcs about two axes or more. None where it is something else, as a round ring or a tray. */
+/** Measures a part as a thin band: as thick everywhere on average as its volume over its sides,
+ with arcs about two axes or more. None where it is something else, as a round ring or a tray. */
 [[nodiscard]] std::optional<BandShape> FindBandShape(const Part& part);
 
 /** Lists the occurrences that give by their form and by where they are:

@@ -57,8 +57,8 @@ namespace {
 /** A wall that would bend aside, and where it is on the way. */
 struct BendingWall {
   OccurrenceId part;
-  Vec3 p_back_W;    // Its far side, while the two meet.
-  Vec3 inward_W;    // Unit, where it bends.
+  Vec3 p_back_W;      // Its far side, while the two meet.
+  Vec3 inward_W;      // Unit, where it bends.
   double deflection;  // [m]
 };
 
@@ -105,8 +105,8 @@ BendingAnswer FindWhatBends(const product::Product& product, const SideMeeting& 
     // The part that bends is looked at as drawn.
     const Vec3 moved_W =
         part == meeting.moved ? Vec3(meeting.travelled * meeting.way_W) : Vec3::Zero();
-    const auto bending = FindBending(product, part, meeting.p_W - moved_W, inward_W, meeting.way_W,
-                                     meeting.width);
+    const auto bending =
+        FindBending(product, part, meeting.p_W - moved_W, inward_W, meeting.way_W, meeting.width);
     if (!bending || bending->strain > FindBearableStrain(product.part_of(part).material)) {
       return;
     }

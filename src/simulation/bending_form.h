@@ -31,7 +31,7 @@ struct Bending {
 struct SideMeeting {
   product::OccurrenceId moved;  ///< The one on its way; the other is where it is drawn.
   product::OccurrenceId other;
-  Vec3 p_W{Vec3::Zero()};     ///< Place of contact.
+  Vec3 p_W{Vec3::Zero()};      ///< Place of contact.
   Vec3 nhat_W{Vec3::UnitX()};  ///< Normal of contact, out of `other`.
   Vec3 way_W{Vec3::UnitZ()};   ///< Unit, along which `moved` goes.
   double travelled{0};         ///< How far it has gone there [m].
@@ -59,8 +59,8 @@ struct BendingAnswer {
   std::optional<NoRoom> no_room;   ///< Where none bends: what would, if it had room.
 };
 
-/** Finds which of two parts that meet sideways bends aside: one that is not stated to be rigid, is a
- wall there (FindBending), bears the strain (product::FindBearableStrain), and has one and a half
+/** Finds which of two parts that meet sideways bends aside: one that is not stated to be rigid, is
+ a wall there (FindBending), bears the strain (product::FindBearableStrain), and has one and a half
  times the room that it needs behind it, before any part that is present.
  @param is_present  By occurrence. */
 [[nodiscard]] BendingAnswer FindWhatBends(const product::Product& product,

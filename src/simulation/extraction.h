@@ -218,7 +218,8 @@ class Extraction {
   /** Explains why TryRemoveOne did not find a way out for a part. */
   [[nodiscard]] std::string ExplainStuck(product::OccurrenceId id) const;
 
-  /** Explains that a part would go if a wall bent that has no room to; empty where none is known. */
+  /** Explains that a part would go if a wall bent that has no room to; empty where none is known.
+   */
   [[nodiscard]] std::string ExplainBending(product::OccurrenceId id) const;
 
   /** Explains that a part meets an obstacle, with both diameters where a shaft of one would have to
@@ -402,7 +403,7 @@ class Extraction {
   std::vector<Memory> giving_memories_;                      // by occurrence
   std::map<Unit, Memory> unit_memories_;
   FaceReliefs reliefs_;
-  std::vector<Memory> bending_memories_;             // by occurrence
+  std::vector<Memory> bending_memories_;              // by occurrence
   std::map<product::OccurrenceId, NoRoom> no_rooms_;  // By the part that cannot go.
 
   /** A search for a way that turns that found none. */

@@ -31,8 +31,15 @@ constexpr double kSideways = 0.5;          // Normals within 30 degrees of acros
 // Share of an O-ring's section; usual glands squeeze it by 10 to 30 %. A choice.
 constexpr double kMostSqueeze = 0.4;
 
-/** How far one of two parts has to give, as CalcGivingWidth() has it: on a grid by the width itself,
- where it is within the limit. */
+bool IsGivingRing(const product::Product& product, OccurrenceId id) {
+  const product::FlexiblePart* flexible = FindFlexible(product, id);
+  return flexible != nullptr && (flexible->kind == product::FlexibleKind::kRetainingRing ||
+                                 flexible->kind == product::FlexibleKind::kGrooveRing ||
+                                 flexible->kind == product::FlexibleKind::kORing);
+}
+
+/** How far one of two parts has to give, as CalcGivingWidth() has it: on a grid by the width
+ itself, where it is within the limit. */
 double MeasureWidth(const product::Product& product, OccurrenceId moving, OccurrenceId other,
                     const Vec3& way_W, double limit) {
   constexpr double kFinest = 0.1e-3;  // [m]: parts give by a tenth of a millimetre or more.
@@ -73,8 +80,8 @@ void Extraction::Meeting::Add(const MeetingSide& side) {
 }
 
 Extraction::MeetingSide Extraction::Meeting::deepest() const {
-  const auto deepest = std::min_element(
-      sides.begin(), sides.end(), [](const MeetingSide& a, const MeetingSide& b) {
+  const auto deepest =
+      std::min_element(sides.begin(), sides.end(), [](const MeetingSide& a, const MeetingSide& b) {
         return a.contact.distance < b.contact.distance;
       });
   return deepest == sides.end() ? MeetingSide() : *deepest;
@@ -91,10 +98,17 @@ double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
   if (giving_ == Giving::kByClearance) {
     return is_cleared_[other.index()] ? clearance_ : 0;
   }
-  const double known = input_.give_limits.empty() ? 0.0
-                                                  : std::max(input_.give_limits[id.index()],
-                                                             input_.give_limits[other.index()]);
-  if (giving_ != Giving::kByForm || (IsStatedRigid(product_, id) && IsStatedRigid(product_, other))) {
+  double known = 0;
+  if (!input_.give_limits.empty()) {
+    const double own = input_.give_limits[id.index()];
+    const double others = input_.give_limits[other.index()];
+    // What is put over a land is not put over a ring beside it.
+    const bool are_rings =
+        own > 0 && others > 0 && IsGivingRing(product_, id) && IsGivingRing(product_, other);
+    known = are_rings ? 0 : std::max(own, others);
+  }
+  if (giving_ != Giving::kByForm ||
+      (IsStatedRigid(product_, id) && IsStatedRigid(product_, other))) {
     return giving_ == Giving::kNone ? 0 : known;
   }
   const auto longest = [this](OccurrenceId part) {
@@ -206,10 +220,10 @@ BendingAnswer Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
   if (!(side.contact.distance < 0)) {
     return {};  // It would have to be pushed through, not aside.
   }
-  return simulation::FindWhatBends(product_,
-                                   {id, other, side.contact.p_WC, side.contact.nhat_W, direction,
-                                    side.travelled, width},
-                                   is_present_);
+  return simulation::FindWhatBends(
+      product_,
+      {id, other, side.contact.p_WC, side.contact.nhat_W, direction, side.travelled, width},
+      is_present_);
 }
 
 bool Extraction::MayBend(OccurrenceId id, OccurrenceId other, const Meeting& meeting,
@@ -237,12 +251,11 @@ std::string Extraction::ExplainBending(OccurrenceId id) const {
   }
   const NoRoom& no_room = found->second;
   const bool is_own = no_room.part == id;
-  return fmt::format("no room to bend: {} would have to bend by {:.2f} mm, and {} leaves {:.2f} mm "
-                     "behind it",
-                     is_own ? std::string("an arm or wall of it")
-                            : "an arm or wall of " + Describe(no_room.part),
-                     units::ToMm(no_room.needed), Describe(no_room.against),
-                     units::ToMm(no_room.free));
+  return fmt::format(
+      "no room to bend: {} would have to bend by {:.2f} mm, and {} leaves {:.2f} mm "
+      "behind it",
+      is_own ? std::string("an arm or wall of it") : "an arm or wall of " + Describe(no_room.part),
+      units::ToMm(no_room.needed), Describe(no_room.against), units::ToMm(no_room.free));
 }
 
 GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, bool gives_itself,
@@ -399,7 +412,24 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
     const double width = MeasureWidth(product_, id, other, direction, limit);
     const bool is_too_wide = width > 0 && width > CalcWidestGiven(id, other, direction, limit);
     const bool has_to_bend = giving_ == Giving::kByForm && !GivesAsKnown(id, other, width);
-    if (is_too_wide || (has_to_bend && !MayBend(id, other, meeting, direction, width))) {
+    Meeting seen = meeting;
+    if (!is_too_wide && has_to_bend && seen.sides.empty()) {
+      // Faces that a fit answers for meet as well where a barb is next to them.
+      contact::QueryOptions query;
+      query.margin = -kDepthTolerance;
+      query.self = contact::BodyId(id.index());
+      const double exit = CalcExitDistance({id}, direction);
+      const double step = CalcStep({id}, exit);
+      VisitContacts(
+          id, direction, query, step, static_cast<int>(exit / step),
+          [&seen, &direction, other = other](const contact::Contact& contact, double travelled) {
+            if (contact.body.is_valid() && OccurrenceId(contact.body.index()) == other &&
+                contact.distance < 0 && std::abs(contact.nhat_W.dot(direction)) < kSideways) {
+              seen.Add({contact, travelled});
+            }
+          });
+    }
+    if (is_too_wide || (has_to_bend && !MayBend(id, other, seen, direction, width))) {
       return Obstacle{other, 0, {}};
     }
   }
@@ -443,8 +473,7 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
       return part == nullptr ? 0.0 : part->allowance;
     };
     const double limit = std::max(limit_of(own), limit_of(others));
-    give.width =
-        MeasureWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
+    give.width = MeasureWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
     const auto bending = FindWhatBends(id, other, meeting.deepest(), direction, give.width).bends;
     const bool is_known = limit > 0 && give.width <= limit;
     const bool is_own =

@@ -223,15 +223,14 @@ std::string PartRun::DescribeAllowance(const PartAllowance& allowance, bool is_b
           ? fmt::format(", {:.3g} N in, {:.3g} N out", allowance.force.in, allowance.force.out)
           : "";
   const std::string strain =
-      allowance.strain > 0
-          ? fmt::format(", strain {:.2g} % of {:.2g} % that {} bears", 100 * allowance.strain,
-                        100 * allowance.bearable_strain,
-                        product::DescribeBearing(
-                            model().product->part_of(allowance.flexible).material,
-                            allowance.flexible_kind == product::FlexibleKind::kForm
-                                ? "a plastic"
-                                : "spring steel"))
-          : "";
+      allowance.strain > 0 ? fmt::format(", strain {:.2g} % of {:.2g} % that {} bears",
+                                         100 * allowance.strain, 100 * allowance.bearable_strain,
+                                         product::DescribeBearing(
+                                             model().product->part_of(allowance.flexible).material,
+                                             allowance.flexible_kind == product::FlexibleKind::kForm
+                                                 ? "a plastic"
+                                                 : "spring steel"))
+                           : "";
   return fmt::format("goes in by giving {:.2f} mm ({}{}{}{})", units::ToMm(allowance.depth),
                      product::ToString(allowance.flexible_kind), who, force, strain);
 }

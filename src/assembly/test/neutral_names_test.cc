@@ -29,22 +29,23 @@ std::string ReadText(const std::filesystem::path& file) {
 /** Copies an example product, without its side file. */
 std::filesystem::path Copy(const std::string& name, const TemporaryFolder& folder) {
   const std::filesystem::path copy = folder / (name + ".step");
-  std::filesystem::copy_file(
-      std::filesystem::path(HVAS_SOURCE_DIR) / "products" / (name + ".step"), copy);
+  std::filesystem::copy_file(std::filesystem::path(HVAS_SOURCE_DIR) / "products" / (name + ".step"),
+                             copy);
   return copy;
 }
 
 /** Copies one with numbers in the place of the names of its products and occurrences. */
 std::filesystem::path CopyWithoutNames(const std::string& name, const TemporaryFolder& folder) {
   const std::string text = ReadText(Copy(name, folder));
-  const std::regex named(R"re((=\s*(?:PRODUCT\(|NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*',))'[^']*'(,'[^']*')?)re");
+  const std::regex named(
+      R"re((=\s*(?:PRODUCT\(|NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*',))'[^']*'(,'[^']*')?)re");
   std::string neutral;
   std::size_t at = 0;
   int count = 0;
   for (std::sregex_iterator match(text.begin(), text.end(), named), end; match != end; ++match) {
     const auto begin = static_cast<std::size_t>(match->position());
-    neutral += text.substr(at, begin - at) + (*match)[1].str() + "'n" + std::to_string(++count) + "'" +
-               ((*match)[2].matched ? ",''" : "");
+    neutral += text.substr(at, begin - at) + (*match)[1].str() + "'n" + std::to_string(++count) +
+               "'" + ((*match)[2].matched ? ",''" : "");
     at = begin + static_cast<std::size_t>(match->length());
   }
   EXPECT_GT(count, 0);

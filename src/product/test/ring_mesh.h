@@ -26,8 +26,10 @@ inline Part MakeRingPart(const RingMesh& ring, const Quat& turned = Quat::Identi
   for (int i = 0; i <= kPieces; ++i) {
     const double share = static_cast<double>(i) / kPieces;
     const double angle = 0.5 * ring.gap + share * (2 * std::numbers::pi - ring.gap);
-    for (const auto& [r, z] : {std::pair(ring.inner, 0.0), {ring.outer, 0.0},
-                               {ring.outer, ring.height}, {ring.inner, ring.height}}) {
+    for (const auto& [r, z] : {std::pair(ring.inner, 0.0),
+                               {ring.outer, 0.0},
+                               {ring.outer, ring.height},
+                               {ring.inner, ring.height}}) {
       part.mesh.vertices.push_back(turned * Vec3(r * std::cos(angle), r * std::sin(angle), z));
     }
   }
@@ -64,7 +66,8 @@ inline Part MakeRingPart(const RingMesh& ring, const Quat& turned = Quat::Identi
   for (const double outward : {-1.0, 1.0}) {
     const double radius = outward < 0 ? ring.inner : ring.outer;
     Face face;
-    face.surface = {SurfaceKind::kCylinder, Vec3::Zero(), turned * Vec3::UnitZ(), radius, 0, outward};
+    face.surface = {
+        SurfaceKind::kCylinder, Vec3::Zero(), turned * Vec3::UnitZ(), radius, 0, outward};
     face.area = (2 * std::numbers::pi - ring.gap) * radius * ring.height;
     part.faces.push_back(face);
   }

@@ -58,7 +58,8 @@ TEST(RingShapeTest, ATubeADiscAndAHookAreNoRings) {
 }
 
 TEST(RingShapeTest, TheNameOfASplitRingSaysNothing) {
-  for (const char* name : {"part 7", "compression seal", "snap clip", "spring washer", "retainer"}) {
+  for (const char* name :
+       {"part 7", "compression seal", "snap clip", "spring washer", "retainer"}) {
     Part part = MakeRingPart({37e-3, 40e-3, 2e-3, 0.02});
     part.name = name;
     const auto flexible = ClassifyFlexible(part);

@@ -62,9 +62,9 @@ TEST(YieldingFormsTest, ARingBesideAGrooveOrLooseInItDoesNotGive) {
   };
   const Part grooved = MakeGrooved(73e-3, 2e-3);
   EXPECT_EQ(list(grooved, {37e-3, 40e-3, 2e-3, 0}, 0), 1U);
-  EXPECT_EQ(list(grooved, {37e-3, 40e-3, 2e-3, 0}, 5e-3), 0U);     // Beside it.
-  EXPECT_EQ(list(grooved, {38.6e-3, 40e-3, 2e-3, 0}, 0), 0U);      // It goes over the land.
-  EXPECT_EQ(list(grooved, {37e-3, 60e-3, 2e-3, 0}, 0), 0U);        // A disc that does not stretch.
+  EXPECT_EQ(list(grooved, {37e-3, 40e-3, 2e-3, 0}, 5e-3), 0U);  // Beside it.
+  EXPECT_EQ(list(grooved, {38.6e-3, 40e-3, 2e-3, 0}, 0), 0U);   // It goes over the land.
+  EXPECT_EQ(list(grooved, {37e-3, 60e-3, 2e-3, 0}, 0), 0U);     // A disc that does not stretch.
   EXPECT_EQ(list(MakeGrooved(73e-3, 12e-3), {37e-3, 40e-3, 2e-3, 0}, 0), 0U);  // By more than 25 %.
 }
 
@@ -80,8 +80,9 @@ Part MakeBand(double thickness, double width) {
     const double angle = std::numbers::pi * ((is_right ? i : i - 1) / double{kPieces} - 0.5);
     for (const auto& [out, z] :
          {std::pair(0.0, 0.0), {thickness, 0.0}, {thickness, width}, {0.0, width}}) {
-      part.mesh.vertices.emplace_back((is_right ? kHalf : -kHalf) + (kRadius + out) * std::cos(angle),
-                                      (kRadius + out) * std::sin(angle), z);
+      part.mesh.vertices.emplace_back(
+          (is_right ? kHalf : -kHalf) + (kRadius + out) * std::cos(angle),
+          (kRadius + out) * std::sin(angle), z);
     }
   }
   for (int i = 0; i < count; ++i) {
@@ -136,7 +137,7 @@ TEST(YieldingFormsTest, ABandRoundTwoShaftsIsABelt) {
 }
 
 TEST(YieldingFormsTest, AThickLinkAndARoundRingAreNoBands) {
-  EXPECT_FALSE(FindBandShape(MakeBand(10e-3, 6e-3)));   // The link of a chain.
+  EXPECT_FALSE(FindBandShape(MakeBand(10e-3, 6e-3)));    // The link of a chain.
   EXPECT_FALSE(FindBandShape(MakeBand(1.5e-3, 90e-3)));  // The wall of a case.
   Part ring = MakeBand(1.5e-3, 6e-3);
   ring.faces.pop_back();

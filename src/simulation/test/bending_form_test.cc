@@ -33,14 +33,19 @@ class PlateTest : public ::testing::Test {
   /** What comes of it where a thick block pushes the plate by 0.5 mm towards a wall.
    @param gap  Between plate and wall [m]. */
   [[nodiscard]] BendingAnswer PushTowardsWall(double gap, bool is_wall_there) {
-    const auto block = testing::AddPart(&product_, "block", contact::testing::Block(Vec3::Constant(5e-3)));
+    const auto block =
+        testing::AddPart(&product_, "block", contact::testing::Block(Vec3::Constant(5e-3)));
     const auto wall =
         testing::AddPart(&product_, "wall", contact::testing::Block(Vec3(5e-3, 8e-3, 10e-3)));
     testing::Place(&product_, block, "block", X_WP_ * Pose(Vec3(5.5e-3, 0, 5e-3)));
     testing::Place(&product_, wall, "wall", X_WP_ * Pose(Vec3(-6e-3 - gap, 0, 0)));
-    const SideMeeting meeting{OccurrenceId(1),          OccurrenceId(0),
-                              X_WP_ * Vec3(0.8e-3, 0.3e-3, 6e-3), X_WP_.q() * Vec3::UnitX(),
-                              X_WP_.q() * Vec3::UnitZ(), 0, 0.5e-3};
+    const SideMeeting meeting{OccurrenceId(1),
+                              OccurrenceId(0),
+                              X_WP_ * Vec3(0.8e-3, 0.3e-3, 6e-3),
+                              X_WP_.q() * Vec3::UnitX(),
+                              X_WP_.q() * Vec3::UnitZ(),
+                              0,
+                              0.5e-3};
     return FindWhatBends(product_, meeting, {true, false, is_wall_there});
   }
 

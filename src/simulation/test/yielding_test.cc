@@ -15,10 +15,10 @@
 namespace hvas::simulation {
 namespace {
 
-using ::testing::IsSubstring;
 using contact::testing::CylinderZ;
 using contact::testing::Lathe;
 using contact::testing::PlaneAt;
+using ::testing::IsSubstring;
 using testing::OccurrenceId;
 using testing::Pose;
 using testing::Product;
@@ -128,16 +128,16 @@ Product CapInCollar(double room, const std::string& name) {
                               {{{10e-3, 13e-3}, {10e-3, 17e-3}}, CylinderZ(10e-3, 1)},
                               {{{10e-3, 17e-3}, {0, 17e-3}}, PlaneAt(17e-3, 1)}},
                              64));
-  const auto cap = testing::AddPart(
-      &product, name,
-      Lathe({{{{0, 17e-3}, {10.4e-3, 17e-3}}, PlaneAt(17e-3, -1)},
-             {{{10.4e-3, 17e-3}, {10.4e-3, 11e-3}}, CylinderZ(10.4e-3, -1)},
-             {{{10.4e-3, 11e-3}, {10.05e-3, 11e-3}}, PlaneAt(11e-3, 1)},
-             {{{10.05e-3, 11e-3}, {10.05e-3, 10e-3}}, CylinderZ(10.05e-3, -1)},
-             {{{10.05e-3, 10e-3}, {kCap, 10e-3}}, PlaneAt(10e-3, -1)},
-             {{{kCap, 10e-3}, {kCap, 19e-3}}, CylinderZ(kCap, 1)},
-             {{{kCap, 19e-3}, {0, 19e-3}}, PlaneAt(19e-3, 1)}},
-            64));
+  const auto cap =
+      testing::AddPart(&product, name,
+                       Lathe({{{{0, 17e-3}, {10.4e-3, 17e-3}}, PlaneAt(17e-3, -1)},
+                              {{{10.4e-3, 17e-3}, {10.4e-3, 11e-3}}, CylinderZ(10.4e-3, -1)},
+                              {{{10.4e-3, 11e-3}, {10.05e-3, 11e-3}}, PlaneAt(11e-3, 1)},
+                              {{{10.05e-3, 11e-3}, {10.05e-3, 10e-3}}, CylinderZ(10.05e-3, -1)},
+                              {{{10.05e-3, 10e-3}, {kCap, 10e-3}}, PlaneAt(10e-3, -1)},
+                              {{{kCap, 10e-3}, {kCap, 19e-3}}, CylinderZ(kCap, 1)},
+                              {{{kCap, 19e-3}, {0, 19e-3}}, PlaneAt(19e-3, 1)}},
+                             64));
   testing::Place(&product, neck, "neck");
   testing::Place(&product, cap, name);
   Recognise(&product);
