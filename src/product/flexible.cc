@@ -152,7 +152,7 @@ constexpr double kWidestSplit = 0.8 * std::numbers::pi;
 
 /** A flat ring that is open: a hole and a rim about one axis that cover most of the turn. */
 bool IsOpenRing(const Part& part) {
-  constexpr double kLeast = 2 * std::numbers::pi - kWidestSplit;
+  constexpr double kLeast = 2 * std::numbers::pi - kWidestSplit;  // What a gap leaves.
   constexpr double kMost = 1.97 * std::numbers::pi;  // 355 degrees: less is open. A choice.
   constexpr double kFlat = 0.15;  // Thickness over diameter; DIN 471 has at most 0.13.
   if (LeastExtent(part) > kFlat * LargestExtent(part)) {

@@ -13,7 +13,7 @@
 namespace hvas::product {
 namespace {
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr double kFullTurn = 2 * std::numbers::pi;  // [rad], by definition.
 constexpr double kHighestRing = 0.3;  // Of the outer diameter; what is higher is a tube. A choice.
 constexpr double kNarrowestBore = 0.3;  // Of the outer radius; DIN 6799 has 0.36 on.
 constexpr double kLeastRingFilled =

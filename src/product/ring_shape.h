@@ -9,7 +9,7 @@ namespace hvas::product {
 /** A plain flat ring: a body of one section that goes round an axis, closed or split. */
 struct RingShape {
   Vec3 axis_B{Vec3::UnitZ()};   ///< Unit.
-  Vec3 centre_B{Vec3::Zero()};  ///< On the axis, in the middle of its height [m].
+  Vec3 centre_B{Vec3::Zero()};  ///< Point of the axis, in the middle of its height [m].
   double inner{0};              ///< Radii [m].
   double outer{0};
   double height{0};  ///< Along its axis [m].

@@ -15,7 +15,7 @@ struct BandShape {
   Vec3 axis_B{Vec3::UnitZ()};  ///< Unit, across the band.
   std::vector<Vec3> arcs_B;    ///< A point of the axis of each arc, one for each axis [m].
   double thickness{0};         ///< The mean along it [m].
-  double length{0};            ///< Of its middle line [m].
+  double length{0};            ///< Length of its middle line [m].
 };
 
 /** Measures a part as a thin band: as thick everywhere on average as its volume over its sides,

@@ -112,7 +112,8 @@ BendingAnswer FindWhatBends(const product::Product& product, const SideMeeting& 
     }
     const BendingWall wall{part, bending->p_back_W + moved_W, inward_W, meeting.width};
     if (auto no_room = FindNoRoom(product, meeting, wall, is_present)) {
-      answer.no_room = answer.no_room ? answer.no_room : no_room;
+      const bool has_more = !answer.no_room || no_room->free > answer.no_room->free;
+      answer.no_room = has_more ? no_room : answer.no_room;
     } else if (!answer.bends || bending->strain < answer.bends->bending.strain) {
       answer.bends = WhatBends{part, *bending, inward_W.dot(meeting.nhat_W) > 0 ? 1.0 : -1.0};
     }

@@ -56,7 +56,7 @@ struct NoRoom {
 /** What comes of it where two parts meet sideways. */
 struct BendingAnswer {
   std::optional<WhatBends> bends;  ///< The one with the least strain; none: neither bears it.
-  std::optional<NoRoom> no_room;   ///< Where none bends: what would, if it had room.
+  std::optional<NoRoom> no_room;   ///< Where none bends: what would, with the most room.
 };
 
 /** Finds which of two parts that meet sideways bends aside: one that is not stated to be rigid, is

@@ -28,6 +28,7 @@ using product::OccurrenceId;
 constexpr double kUndercut = 0.05;         // Of the longest side of the smaller part.
 constexpr double kLargestUndercut = 5e-3;  // [m]
 constexpr double kSideways = 0.5;          // Normals within 30 degrees of across the way: a choice.
+constexpr double kDownwards = -0.5;        // Within 60 degrees of down: a choice.
 // Share of an O-ring's section; usual glands squeeze it by 10 to 30 %. A choice.
 constexpr double kMostSqueeze = 0.4;
 
@@ -43,9 +44,10 @@ bool IsGivingRing(const product::Product& product, OccurrenceId id) {
 double MeasureWidth(const product::Product& product, OccurrenceId moving, OccurrenceId other,
                     const Vec3& way_W, double limit) {
   constexpr double kFinest = 0.1e-3;  // [m]: parts give by a tenth of a millimetre or more.
+  constexpr double kShare = 0.25;     // Of the width, so that it is good to a twentieth. A choice.
   const double width = CalcGivingWidth(product, moving, other, way_W, limit);
   return width > 0 && width < limit
-             ? CalcGivingWidth(product, moving, other, way_W, std::max(width, kFinest))
+             ? CalcGivingWidth(product, moving, other, way_W, std::max(kShare * width, kFinest))
              : width;
 }
 
@@ -143,7 +145,9 @@ bool Extraction::MayGive(OccurrenceId id) const {
 std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
                                                       const Unit& deferred) {
   std::vector<Memory>& memories = giving == Giving::kByForm ? bending_memories_ : giving_memories_;
-  for (const bool is_deferred : {false, true}) {
+  // What can be put in from above is: the product is not turned over for a ring.
+  for (const auto& [is_deferred, may_go_down] :
+       {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
     for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
       const OccurrenceId id = (*rest)[i];
       if ((giving == Giving::kAsKnown && !MayGive(id)) ||
@@ -153,6 +157,11 @@ std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
       giving_ = giving;
       std::optional<SequenceStep> step = TryRemove({id}, &memories[id.index()]);
       giving_ = Giving::kNone;
+      if (step && !may_go_down && step->extraction_W.z() < kDownwards) {
+        SetPresent({id}, true);
+        memories[id.index()] = {};
+        continue;
+      }
       if (step) {
         if (auto rigid = giving == Giving::kByForm ? FindRigidWay(id) : std::nullopt) {
           step = std::move(rigid);

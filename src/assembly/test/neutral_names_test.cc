@@ -82,7 +82,7 @@ TEST_P(NeutralPartsTest, TheSamePartsGiveByTheSame) {
 INSTANTIATE_TEST_SUITE_P(Products, NeutralPartsTest,
                          ::testing::Values("bushing", "fit_rig", "gear_pump", "nut_bolt",
                                            "peg_hole", "snap_joint"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& named) { return named.param; });
 
 TEST(NeutralNamesTest, TheVerdictOnTheSnapJointIsTheSame) {
   const TemporaryFolder folder;
