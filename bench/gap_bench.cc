@@ -13,7 +13,7 @@
 #include "assembly/open_product.h"
 #include "assembly/prepare_model.h"
 #include "base/file_cache.h"
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 
 namespace {
 
@@ -29,7 +29,7 @@ struct Wishes {
   std::vector<std::string> rigid;
   std::vector<std::string> explained;  // Paths of parts that are not given up.
   std::uint64_t seed{1};
-  hvas::simulation::GapReasonOptions options;
+  hvas::orders::GapReasonOptions options;
 };
 
 void ExplainFile(const std::string& file, const Wishes& wishes) {
@@ -54,7 +54,7 @@ void ExplainFile(const std::string& file, const Wishes& wishes) {
     std::printf("%s: %s\n", file.c_str(), model.error().ToString().c_str());
     return;
   }
-  std::vector<hvas::simulation::SequenceGap> gaps = (*model)->sequence.gaps;
+  std::vector<hvas::sequence::SequenceGap> gaps = (*model)->sequence.gaps;
   std::printf("%s: %zu parts, %zu given up, prepared in %.1f s\n", file.c_str(),
               (*model)->bodies.size(), gaps.size(), SecondsSince(start));
   for (const std::string& path : wishes.explained) {
@@ -64,9 +64,9 @@ void ExplainFile(const std::string& file, const Wishes& wishes) {
       }
     }
   }
-  for (const hvas::simulation::SequenceGap& gap : gaps) {
+  for (const hvas::sequence::SequenceGap& gap : gaps) {
     const Clock::time_point begin = Clock::now();
-    const auto reason = hvas::simulation::ExplainGap(**model, gap.occurrence, wishes.options);
+    const auto reason = hvas::orders::ExplainGap(**model, gap.occurrence, wishes.options);
     std::printf("  %s\n    planner: %s\n",
                 (*model)->product->occurrences[gap.occurrence.index()].path.c_str(),
                 gap.reason.c_str());
@@ -76,13 +76,13 @@ void ExplainFile(const std::string& file, const Wishes& wishes) {
     }
     std::printf("    %.1f s, %llu looks, %zu parts there, proof: %s\n", SecondsSince(begin),
                 static_cast<unsigned long long>(reason->looks), reason->present.size(),
-                hvas::simulation::NameOf(reason->proof));
-    for (const std::string& line : hvas::simulation::FormatGapReason(**model, *reason)) {
+                hvas::orders::NameOf(reason->proof));
+    for (const std::string& line : hvas::orders::FormatGapReason(**model, *reason)) {
       std::printf("    | %s\n", line.c_str());
     }
-    for (const hvas::simulation::GapChange& change : reason->changes) {
+    for (const hvas::orders::GapChange& change : reason->changes) {
       std::printf("      - %s\n",
-                  hvas::simulation::DescribeGapChange(**model, *reason, change).c_str());
+                  hvas::orders::DescribeGapChange(**model, *reason, change).c_str());
     }
     std::fflush(stdout);
   }

@@ -25,11 +25,11 @@
 #include "mates/infer.h"
 #include "mates/side_file.h"
 #include "mates/stated_fits.h"
+#include "person/simulated_person.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
 #include "simulation/model.h"
-#include "simulation/simulated_person.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas {
 namespace {
@@ -40,7 +40,7 @@ using ProductPtr = std::shared_ptr<product::Product>;
 /** All that an assembly is run with and that is varied here. */
 struct Setting {
   haptics::TickOptions tick;
-  simulation::PersonOptions person;
+  person::PersonOptions person;
   contact::ShapeOptions shape;
   int effort_level{0};  ///< The level of simulation::kEffortLevels.
 };
@@ -153,8 +153,8 @@ Outcome Assemble(const ModelPtr& model, const Setting& setting, const Common& co
   for (int seed = 1; seed <= common.seeds; ++seed) {
     simulation::Simulation simulation(model, tick);
     simulation.haptics().SetEffortLevel(setting.effort_level);
-    simulation::SimulatedPerson person(setting.person, static_cast<std::uint64_t>(seed),
-                                       simulation::StartOfHand(*model));
+    person::SimulatedPerson person(setting.person, static_cast<std::uint64_t>(seed),
+                                   simulation::StartOfHand(*model));
     simulation::AssemblyRun run(&simulation, &person, nullptr);
     const auto report = simulation::RunLockstep(run.MakeExecution(&person, kLimit));
     double peak = 0;

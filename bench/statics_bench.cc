@@ -15,12 +15,12 @@
 #include <fmt/format.h>
 
 #include "load_model.h"
-#include "simulation/state_statics.h"
+#include "orders/state_statics.h"
 
 namespace {
 
 using hvas::product::OccurrenceId;
-using hvas::simulation::SequenceStep;
+using hvas::sequence::SequenceStep;
 
 double CalcSeconds(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -35,7 +35,7 @@ std::string ListNames(const hvas::simulation::Model& model, const std::vector<Oc
 }
 
 bool Measure(const std::string& file, bool has_states,
-             const hvas::simulation::StateStaticsOptions& options) {
+             const hvas::orders::StateStaticsOptions& options) {
   const auto loaded = hvas::bench::LoadModel(file);
   if (!loaded) {
     fmt::print(stderr, "{}\n", loaded.error().ToString());
@@ -43,7 +43,7 @@ bool Measure(const std::string& file, bool has_states,
   }
   const hvas::simulation::Model& model = **loaded;
   auto begin = std::chrono::steady_clock::now();
-  const hvas::simulation::StateStatics statics(model);
+  const hvas::orders::StateStatics statics(model);
   const double contact_time = CalcSeconds(begin);
   std::vector<bool> is_in_place(model.bodies.size(), false);
   int states = 0;
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   bool has_states = false;
   bool is_good = true;
-  hvas::simulation::StateStaticsOptions options;
+  hvas::orders::StateStaticsOptions options;
   for (const std::string& argument : arguments) {
     if (argument == "--states") {
       has_states = true;

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: there is no second part to put in\n", argv[1]);
     return 1;
   }
-  const hvas::simulation::SequenceStep& step = (*model)->sequence.steps[options.step];
+  const hvas::sequence::SequenceStep& step = (*model)->sequence.steps[options.step];
   const hvas::spatial::Pose& goal = (*model)->bodies[step.occurrence.index()].X_WB_goal;
   double travel = step.engage_distance + 10e-3;
   const auto at = [&](double s) {
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   constexpr double kSpeed = 0.04;      // [m/s]
   constexpr double kMostLead = 15e-3;  // How far the hand goes ahead of a part that sticks [m].
   constexpr double kLimit_s = 30;
-  hvas::simulation::HandReference hand;
+  hvas::person::HandReference hand;
   hand.is_gripping = true;
   while (!(*run)->is_seated() && (*run)->last().t_s < kLimit_s) {
     const double* p = (*run)->last().X_WB;

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
     return Fail(plan.error());
   }
   int number = 0;
-  for (const hvas::simulation::FoundOrder& order : plan->search.orders) {
+  for (const hvas::orders::FoundOrder& order : plan->search.orders) {
     std::printf("order %d, cost %.2f:", ++number, order.cost);
     for (const std::size_t move : order.moves) {
       const hvas::product::OccurrenceId part = plan->rules.moves[move].parts.front();

@@ -342,7 +342,7 @@ class Work {
   void LeadParts(const std::shared_ptr<const hvas::simulation::Model>& model) {
     const auto& steps = model->sequence.steps;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      if (steps[i].kind != hvas::simulation::SequenceStep::Kind::kInsert) {
+      if (steps[i].kind != hvas::sequence::SequenceStep::Kind::kInsert) {
         continue;
       }
       hvas::assembly::SteppedOptions options;
@@ -358,7 +358,7 @@ class Work {
         continue;
       }
       progress_.is_held = true;
-      hvas::simulation::HandReference reference;
+      hvas::person::HandReference reference;
       reference.X_WR = hvas::spatial::Pose((*run)->goal()) * (*run)->X_HB().Inverse();
       reference.is_gripping = true;
       for (const auto& row : (*run)->Step(reference, 10)) {

@@ -49,16 +49,16 @@ bool FclPair::Collides(const spatial::Pose& X_WB) const {
                       request, result) > 0;
 }
 
-FclFinding CheckByFcl(const Puzzle& puzzle, const sweep::Path& path, double step,
+FclFinding CheckByFcl(const Puzzle& puzzle, const paths::Path& path, double step,
                       std::size_t most) {
   const FclPair pair(puzzle);
   const spatial::Box& box_B = puzzle.part_shape->box_B();
   double length = 0;
   for (std::size_t i = 1; i < path.size(); ++i) {
-    length += sweep::CalcLongestWay(path[i - 1], path[i], box_B);
+    length += paths::CalcLongestWay(path[i - 1], path[i], box_B);
   }
-  const sweep::Path samples =
-      sweep::Resample(path, box_B, std::max(step, length / static_cast<double>(most)));
+  const paths::Path samples =
+      paths::Resample(path, box_B, std::max(step, length / static_cast<double>(most)));
   FclFinding finding;
   for (const spatial::Pose& X_WB : samples) {
     ++finding.samples;

@@ -27,7 +27,7 @@ class FclPair {
 };
 
 /** Asks FCL along a way, every `step` [m] and at most `most` times, evenly. */
-[[nodiscard]] FclFinding CheckByFcl(const Puzzle& puzzle, const sweep::Path& path, double step,
+[[nodiscard]] FclFinding CheckByFcl(const Puzzle& puzzle, const paths::Path& path, double step,
                                     std::size_t most);
 
 }  // namespace hvas::bench

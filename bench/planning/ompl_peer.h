@@ -13,7 +13,7 @@ struct PeerRun {
   std::uint64_t queries{0};  ///< Collision queries.
   std::size_t poses{0};      ///< What it found; the path has more of them, close together.
   double check_step{0};      ///< Distance of two poses that are checked [m].
-  sweep::Path path;
+  paths::Path path;
 };
 
 struct PeerOptions {

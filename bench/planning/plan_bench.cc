@@ -10,7 +10,7 @@
 
 #include "fcl_check.h"
 #include "ompl_peer.h"
-#include "planning/check_way.h"
+#include "paths/check_way.h"
 #include "puzzles.h"
 
 namespace {
@@ -79,9 +79,9 @@ Result<bench::Puzzle> Load(const Options& o, const std::string& name) {
   return bench::LoadPuzzle(fmt::format("{}/ompl/{}.cfg", o.folder, name), o.spacing);
 }
 
-Result<planning::WaySearch> Search(const Options& o, const planning::WayProblem& problem, int seed,
-                                   double* seconds) {
-  planning::WayOptions options;
+Result<paths::WaySearch> Search(const Options& o, const paths::WayProblem& problem, int seed,
+                                double* seconds) {
+  paths::WayOptions options;
   options.seed = static_cast<std::uint64_t>(seed);
   options.budget = o.budget;
   options.has_to_improve = o.has_shortening;
@@ -93,14 +93,14 @@ Result<planning::WaySearch> Search(const Options& o, const planning::WayProblem&
       stop.request_stop();
     }
   };
-  auto found = planning::FindWay(problem, options);
+  auto found = paths::FindWay(problem, options);
   *seconds = Seconds(start);
   return found;
 }
 
 /** Checks a way that was found, and counts it. */
-std::string Judge(const bench::Puzzle& puzzle, const planning::WayProblem& problem,
-                  const planning::WaySearch& found, double seconds, Tally* tally) {
+std::string Judge(const bench::Puzzle& puzzle, const paths::WayProblem& problem,
+                  const paths::WaySearch& found, double seconds, Tally* tally) {
   ++tally->runs;
   if (!found.way) {
     return fmt::format("none, to go {:.2f} mm, {} stops", 1e3 * found.distance_to_go,
@@ -109,18 +109,18 @@ std::string Judge(const bench::Puzzle& puzzle, const planning::WayProblem& probl
   ++tally->solved;
   tally->seconds.push_back(seconds);
   tally->queries.push_back(static_cast<double>(found.queries));
-  const double step = planning::CheckStepOf(problem.tolerance);
+  const double step = paths::CheckStepOf(problem.tolerance);
   const bench::FclFinding fcl = bench::CheckByFcl(puzzle, found.way->path, step / 10, 20000);
   tally->colliding += fcl.colliding > 0 ? 1 : 0;
   return fmt::format("{} {} poses, deepest {:.1f} um; FCL {} of {} samples collide",
-                     planning::NameOf(found.way->method), found.way->path.size(),
+                     paths::NameOf(found.way->method), found.way->path.size(),
                      1e6 * found.way->deepest, fcl.colliding, fcl.samples);
 }
 
 void RunOurs(const Options& o, const bench::Puzzle& puzzle) {
   contact::Scene scene;
   (void)scene.Add(puzzle.around_shape, spatial::Pose());
-  planning::WayProblem problem;
+  paths::WayProblem problem;
   problem.scene = &scene;
   problem.part = puzzle.part_shape;
   problem.X_WB_start = puzzle.X_WB_start;

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 #include "contact/shape.h"
-#include "planning/way.h"
+#include "paths/way.h"
 
 namespace hvas::bench {
 
@@ -26,7 +26,7 @@ struct Puzzle {
   spatial::Pose X_WB_start;
   std::optional<spatial::Pose> X_WB_goal;
   double tolerance{50e-6};
-  std::vector<planning::ScrewAxis> axes;
+  std::vector<paths::ScrewAxis> axes;
 };
 
 /** Reads a puzzle of OMPL.app: NAME.cfg and the meshes that it names. A unit is a millimetre here.

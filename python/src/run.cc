@@ -8,6 +8,7 @@
 #include "arguments.h"
 #include "bindings.h"
 #include "evidence/picture.h"
+#include "person/simulated_person.h"
 
 namespace hvas::python {
 namespace {
@@ -41,14 +42,14 @@ struct ModelHandle {
   std::vector<Diagnostic> diagnostics;
 };
 
-py::object Describe(const simulation::SequenceStep& step, const Model& model, std::size_t index) {
+py::object Describe(const sequence::SequenceStep& step, const Model& model, std::size_t index) {
   static constexpr const char* kNames[] = {"base", "insert", "park", "remove", "aside", "return"};
   py::list members;
   for (const product::OccurrenceId id : step.members) {
     members.append(id.index());
   }
   const spatial::Pose goal =
-      simulation::GoalOf(step, model.bodies[step.occurrence.index()].X_WB_goal);
+      sequence::GoalOf(step, model.bodies[step.occurrence.index()].X_WB_goal);
   return MakeDataclass(
       "Step",
       py::dict(py::arg("index") = index,
@@ -70,7 +71,7 @@ py::list ListSteps(const ModelHandle& handle) {
 
 py::dict ListGaps(const ModelHandle& handle) {
   py::dict gaps;
-  for (const simulation::SequenceGap& gap : handle.model->sequence.gaps) {
+  for (const sequence::SequenceGap& gap : handle.model->sequence.gaps) {
     gaps[py::str(PathOf(*handle.model, gap.occurrence))] = gap.reason;
   }
   return gaps;
@@ -167,7 +168,7 @@ py::list Plan(const ModelHandle& handle, const py::object& orders,
   }();
   const assembly::OrderPlan plan = Take(std::move(found));
   py::list list;
-  for (const simulation::FoundOrder& order : plan.search.orders) {
+  for (const orders::FoundOrder& order : plan.search.orders) {
     py::list parts;
     for (const std::size_t move : order.moves) {
       parts.append(PathOf(*handle.model, plan.rules.moves[move].parts.front()));
@@ -398,7 +399,7 @@ void DefineModel(py::module_* module) {
 }
 
 void DefineStep(py::class_<PythonRun>* run) {
-  const simulation::PersonOptions arm;
+  const person::PersonOptions arm;
   using Object = const py::object&;
   run->def(py::init<const ModelHandle&, Object, Object, const std::string&, bool, bool, Object,
                     Object, Object, Object, Object>(),

@@ -27,12 +27,12 @@ RunSetup::RunSetup(std::shared_ptr<const simulation::Model> model, std::vector<H
     : hands_(std::move(hands)),
       simulation_(std::make_unique<simulation::Simulation>(std::move(model), ListTicks(hands_))) {}
 
-simulation::Persons RunSetup::ListPersons() const {
-  simulation::Persons persons{};
+simulation::TaskOperators RunSetup::ListMovers() const {
+  simulation::TaskOperators movers{};
   for (std::size_t i = 0; i < hands_.size(); ++i) {
-    persons[i] = hands_[i].person.get();
+    movers[i] = hands_[i].mover.get();
   }
-  return persons;
+  return movers;
 }
 
 simulation::Execution RunSetup::MakeExecution(double limit_s) {
@@ -45,8 +45,7 @@ simulation::Execution RunSetup::MakeExecution(double limit_s) {
 
 AssemblySetup::AssemblySetup(std::shared_ptr<const simulation::Model> model,
                              std::vector<Hand> hands, simulation::Sink* downstream)
-    : RunSetup(std::move(model), std::move(hands)),
-      run_(&simulation(), ListPersons(), downstream) {}
+    : RunSetup(std::move(model), std::move(hands)), run_(&simulation(), ListMovers(), downstream) {}
 
 AssemblySetup::AssemblySetup(std::shared_ptr<const simulation::Model> model, Hand hand,
                              simulation::Sink* downstream)

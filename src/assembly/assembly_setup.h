@@ -34,8 +34,8 @@ class RunSetup {
   [[nodiscard]] simulation::Execution MakeExecution(double limit_s);
 
  protected:
-  /** The simulated persons, by hand. */
-  [[nodiscard]] simulation::Persons ListPersons() const;
+  /** What does the tasks, by hand. */
+  [[nodiscard]] simulation::TaskOperators ListMovers() const;
 
  private:
   std::vector<Hand> hands_;

@@ -5,17 +5,17 @@
 
 namespace hvas::assembly {
 
-std::vector<simulation::GapReason> ExplainGaps(const simulation::Model& model,
-                                               const ExplainGapsOptions& options) {
+std::vector<orders::GapReason> ExplainGaps(const simulation::Model& model,
+                                           const ExplainGapsOptions& options) {
   using Clock = std::chrono::steady_clock;
-  const std::vector<simulation::SequenceGap>& gaps = model.sequence.gaps;
+  const std::vector<sequence::SequenceGap>& gaps = model.sequence.gaps;
   const std::size_t count = std::min(options.most, gaps.size());
-  simulation::GapReasonOptions each;
+  orders::GapReasonOptions each;
   each.stop = options.stop;
   if (options.time) {
     each.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(*options.time);
   }
-  std::vector<simulation::GapReason> reasons;
+  std::vector<orders::GapReason> reasons;
   while (reasons.size() < count && !options.stop.stop_requested() &&
          (!each.deadline || Clock::now() < *each.deadline)) {
     each.progress = [&](double fraction) {
@@ -24,7 +24,7 @@ std::vector<simulation::GapReason> ExplainGaps(const simulation::Model& model,
                          static_cast<double>(count));
       }
     };
-    auto reason = simulation::ExplainGap(model, gaps[reasons.size()].occurrence, each);
+    auto reason = orders::ExplainGap(model, gaps[reasons.size()].occurrence, each);
     if (!reason) {
       break;
     }

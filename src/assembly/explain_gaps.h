@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 #include "simulation/model.h"
 
 namespace hvas::assembly {
@@ -26,7 +26,7 @@ struct ExplainGapsOptions {
 /** Explains why parts of a model have no way in: those of Sequence::gaps, in their order, as many
  as the limits allow. Where the time ended a look, its reason says so (GapReason::is_limit_reached).
  The same model without a limit of time has the same reasons. */
-[[nodiscard]] std::vector<simulation::GapReason> ExplainGaps(const simulation::Model& model,
-                                                             const ExplainGapsOptions& options);
+[[nodiscard]] std::vector<orders::GapReason> ExplainGaps(const simulation::Model& model,
+                                                         const ExplainGapsOptions& options);
 
 }  // namespace hvas::assembly

@@ -3,16 +3,17 @@
 #include <utility>
 
 #include "base/check.h"
+#include "person/person_at_device.h"
 #include "simulation/assembly_run.h"
+#include "simulation/guided_hand.h"
 
 namespace hvas::assembly {
 namespace {
 
-std::unique_ptr<simulation::SimulatedPerson> MakePerson(const simulation::Model& model,
-                                                        const simulation::PersonOptions& habits,
-                                                        std::uint64_t seed) {
-  return std::make_unique<simulation::SimulatedPerson>(habits, seed,
-                                                       simulation::StartOfHand(model));
+std::unique_ptr<person::SimulatedPerson> MakePerson(const simulation::Model& model,
+                                                    const person::PersonOptions& habits,
+                                                    std::uint64_t seed) {
+  return std::make_unique<person::SimulatedPerson>(habits, seed, simulation::StartOfHand(model));
 }
 
 }  // namespace
@@ -25,10 +26,21 @@ haptics::TickOptions MakePersonTick(const simulation::RenderOptions& render) {
 }
 
 Hand MakePersonHand(const simulation::Model& model, const haptics::TickOptions& tick,
-                    const simulation::PersonOptions& habits, std::uint64_t seed) {
+                    const person::PersonOptions& habits, std::uint64_t seed) {
   Hand hand;
   hand.tick = tick;
-  hand.person = MakePerson(model, habits, seed);
+  hand.mover = MakePerson(model, habits, seed);
+  return hand;
+}
+
+Hand MakeGuidedHand(const simulation::Model& model, const simulation::RenderOptions& render) {
+  Hand hand;
+  hand.tick.device.name = "guided hand";
+  hand.tick.device.max_force = 1.2 * simulation::kMostHandForce;  // The coupling has nine tenths.
+  hand.tick.device.max_torque = 5;
+  hand.tick.coupling = {4000, 90, 20, 1};
+  hand.tick.dt = 1 / render.rate_hz;
+  hand.mover = std::make_unique<simulation::GuidedHand>(simulation::StartOfHand(model));
   return hand;
 }
 
@@ -42,16 +54,18 @@ Hand MakeDeviceHand(const simulation::Model& model, device::OpenedDevice opened,
     hand.at_device = std::make_unique<simulation::DeviceOperator>(hand.opened.device.get());
     return hand;
   }
-  hand.person = MakePerson(model, simulation::MakePersonOptions(tick), seed);
-  hand.at_device = std::make_unique<simulation::PersonAtDevice>(
-      hand.person.get(), hand.opened.emulator.get(), hand.opened.device.get(), is_live);
+  auto person = MakePerson(model, person::MakePersonOptions(tick), seed);
+  hand.at_device = std::make_unique<person::PersonAtDevice>(
+      person.get(), hand.opened.emulator.get(), hand.opened.device.get(), is_live);
+  hand.mover = std::move(person);
   return hand;
 }
 
 Result<Hand> MakeHand(const simulation::Model& model, const HandOptions& options) {
   if (options.device.empty()) {
-    return MakePersonHand(model, MakePersonTick(options.render),
-                          simulation::MakeHabits(options.person, {}), options.seed);
+    return options.person ? MakePersonHand(model, MakePersonTick(options.render),
+                                           person::MakeHabits(*options.person, {}), options.seed)
+                          : MakeGuidedHand(model, options.render);
   }
   auto opened = device::OpenAnyDevice(options.device, options.is_live);
   if (!opened) {

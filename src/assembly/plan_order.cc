@@ -8,18 +8,18 @@
 #include <fmt/format.h>
 
 #include "mates/assignments.h"
-#include "simulation/state_statics.h"
+#include "orders/state_statics.h"
 
 namespace hvas::assembly {
 namespace {
 
+using orders::OrderRules;
+using orders::OrderWish;
 using product::OccurrenceId;
 using simulation::Model;
-using simulation::OrderRules;
-using simulation::OrderWish;
 
 std::size_t FindMove(const OrderRules& rules, OccurrenceId id) {
-  const auto has_part = [id](const simulation::FreeMove& move) {
+  const auto has_part = [id](const orders::FreeMove& move) {
     return std::find(move.parts.begin(), move.parts.end(), id) != move.parts.end();
   };
   const auto found = std::find_if(rules.moves.begin(), rules.moves.end(), has_part);
@@ -88,7 +88,7 @@ Error ExplainStuck(const Model& model, const OrderRules& rules,
     }
     std::vector<std::size_t> others = stuck;
     std::erase(others, wish.then);
-    const std::vector<std::size_t> blocking = simulation::ListBlocking(rules, others, wish.then);
+    const std::vector<std::size_t> blocking = orders::ListBlocking(rules, others, wish.then);
     const std::string then = PathOfMove(model, rules, wish.then);
     text += fmt::format("{}{} is to come before {}", text.empty() ? "" : "; ",
                         PathOfMove(model, rules, wish.first), then);
@@ -104,14 +104,13 @@ Error ExplainStuck(const Model& model, const OrderRules& rules,
 }
 
 /** What has to be held after each move of an order; none after a stop, or where it is not known. */
-std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::StateStatics& states,
-                                        const OrderRules& rules,
-                                        const simulation::FoundOrder& order,
+std::optional<OrderStatics> CalcStatics(const Model& model, const orders::StateStatics& states,
+                                        const OrderRules& rules, const orders::FoundOrder& order,
                                         const std::stop_token& stop) {
   OrderStatics statics;
-  statics.up_W = simulation::ListUpSides(rules, order);
+  statics.up_W = orders::ListUpSides(rules, order);
   std::vector<bool> is_in_place(model.bodies.size(), false);
-  is_in_place[simulation::FindBase(model.sequence).index()] = true;
+  is_in_place[sequence::FindBase(model.sequence).index()] = true;
   // A state of 500 parts that falls takes a second, one of 40 some milliseconds.
   constexpr std::size_t kMostBodies = 20'000;
   const std::size_t stride = 1 + order.moves.size() * model.bodies.size() / kMostBodies;
@@ -123,7 +122,7 @@ std::optional<OrderStatics> CalcStatics(const Model& model, const simulation::St
     if ((order.moves.size() - 1 - i) % stride != 0) {
       continue;
     }
-    simulation::StateStaticsOptions state_options;
+    orders::StateStaticsOptions state_options;
     state_options.ghat_W = -statics.up_W[i];
     const auto state = states.CalcStability(is_in_place, state_options);
     if (!state || stop.stop_requested()) {
@@ -143,8 +142,8 @@ constexpr double kAlikeCost = 0.1;
 /** Finds the statics of the orders, and puts those first of about equal cost in which less has to
  be held. */
 void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan) {
-  const simulation::StateStatics states(model);
-  std::vector<simulation::FoundOrder>& orders = plan->search.orders;
+  const orders::StateStatics states(model);
+  std::vector<orders::FoundOrder>& orders = plan->search.orders;
   // The first order of so many moves, more of fewer: a choice.
   constexpr std::size_t kMostStates = 300;
   std::size_t states_left = kMostStates;
@@ -168,7 +167,7 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
     return std::pair(std::floor(orders[a].cost / kAlikeCost), plan->statics[a].held_states) <
            std::pair(std::floor(orders[b].cost / kAlikeCost), plan->statics[b].held_states);
   });
-  std::vector<simulation::FoundOrder> sorted;
+  std::vector<orders::FoundOrder> sorted;
   std::vector<OrderStatics> statics;
   for (const std::size_t place : places) {
     sorted.push_back(std::move(orders[place]));
@@ -182,7 +181,7 @@ void AddStatics(const Model& model, const PlanOptions& options, OrderPlan* plan)
 
 Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
   OrderPlan plan;
-  simulation::OrderRuleOptions rule_options;
+  orders::OrderRuleOptions rule_options;
   rule_options.stop = options.stop;
   const auto report = [&options](const char* stage) {
     return [&options, stage](double fraction) {
@@ -192,12 +191,12 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
     };
   };
   rule_options.progress = report("ways of the parts");
-  plan.rules = simulation::FindOrderRules(model, rule_options);
+  plan.rules = orders::FindOrderRules(model, rule_options);
   auto wishes = ListWishes(model, plan.rules, options);
   if (!wishes) {
     return Unexpected(wishes.error());
   }
-  simulation::OrderSearchOptions search;
+  orders::OrderSearchOptions search;
   search.weights = options.weights;
   search.wishes = *wishes;
   search.most_orders = options.most_orders;
@@ -209,14 +208,14 @@ Result<OrderPlan> PlanOrder(const Model& model, const PlanOptions& options) {
         std::chrono::steady_clock::now() +
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(*options.time);
   }
-  plan.search = simulation::FindOrders(plan.rules, search);
+  plan.search = orders::FindOrders(plan.rules, search);
   if (plan.search.orders.empty() && !plan.rules.moves.empty() && !options.stop.stop_requested()) {
     return Unexpected(ExplainStuck(model, plan.rules, *wishes, plan.search.stuck));
   }
   AddStatics(model, options, &plan);
   if (!plan.statics.empty() && !plan.statics.front().up_W.empty()) {
-    plan.standing_margin = simulation::CalcStandingMargin(
-        model, simulation::FindBase(model.sequence), Vec3(-plan.statics.front().up_W.front()));
+    plan.standing_margin = orders::CalcStandingMargin(model, sequence::FindBase(model.sequence),
+                                                      Vec3(-plan.statics.front().up_W.front()));
   }
   ExplainGapsOptions gaps;
   gaps.most = options.most_reasons;
@@ -265,13 +264,13 @@ Result<CheckedOrder> CheckOrder(const Model& model, const OrderRules& rules,
     return Unexpected(moves.error());
   }
   CheckedOrder checked;
-  simulation::OrderSearchOptions search;
+  orders::OrderSearchOptions search;
   search.weights = options.weights;
   search.most_orders = 1;
   search.stop = options.stop;
   std::vector<std::size_t> before;
   for (const std::size_t move : *moves) {
-    checked.blocking.push_back(simulation::ListBlocking(rules, before, move));
+    checked.blocking.push_back(orders::ListBlocking(rules, before, move));
     if (!before.empty()) {
       search.wishes.push_back({before.back(), move});
     }
@@ -281,11 +280,11 @@ Result<CheckedOrder> CheckOrder(const Model& model, const OrderRules& rules,
   const bool is_free = std::all_of(checked.blocking.begin(), checked.blocking.end(),
                                    [](const auto& blocking) { return blocking.empty(); });
   if (is_free) {
-    simulation::OrderSearch found = simulation::FindOrders(rules, search);
+    orders::OrderSearch found = orders::FindOrders(rules, search);
     if (!found.orders.empty()) {
       checked.order = std::move(found.orders.front());
       checked.statics =
-          CalcStatics(model, simulation::StateStatics(model), rules, *checked.order, options.stop);
+          CalcStatics(model, orders::StateStatics(model), rules, *checked.order, options.stop);
     }
   }
   if (options.stop.stop_requested()) {

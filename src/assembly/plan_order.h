@@ -10,13 +10,13 @@
 
 #include "assembly/explain_gaps.h"
 #include "base/result.h"
+#include "orders/order_search.h"
 #include "simulation/model.h"
-#include "simulation/order_search.h"
 
 namespace hvas::assembly {
 
 struct PlanOptions {
-  simulation::OrderWeights weights;
+  orders::OrderWeights weights;
   std::vector<std::pair<std::string, std::string>> before;  ///< Pairs of parts: first, then.
   /** Parts that have to come in this order, by name, path or id; the others anywhere. */
   std::vector<std::string> order;
@@ -41,19 +41,19 @@ struct OrderStatics {
 
 /** Orders of assembly of a model. */
 struct OrderPlan {
-  simulation::OrderRules rules;
-  simulation::OrderSearch search;  ///< Orders of about equal cost stand by how little is held.
+  orders::OrderRules rules;
+  orders::OrderSearch search;  ///< Orders of about equal cost stand by how little is held.
   /** Statics of the first of search.orders: as many as 300 moves allow, one at least. */
   std::vector<OrderStatics> statics;
   /** How far a table with the base on it, as the fixture holds it first in the best order, may be
    inclined before the base tips [rad]; not above zero where it does not stand by itself. */
   double standing_margin{0};
   /** Why parts are left out: of the first of Sequence::gaps, as many as PlanOptions allows. */
-  std::vector<simulation::GapReason> reasons;
+  std::vector<orders::GapReason> reasons;
 };
 
 /** The best order of a plan: the one that the planner found where the search has none. */
-[[nodiscard]] inline const simulation::FoundOrder& BestOrder(const OrderPlan& plan) {
+[[nodiscard]] inline const orders::FoundOrder& BestOrder(const OrderPlan& plan) {
   return plan.search.orders.empty() ? plan.search.planned : plan.search.orders.front();
 }
 
@@ -71,7 +71,7 @@ struct CheckedOrder {
    there; empty where it can come. */
   std::vector<std::vector<std::size_t>> blocking;
   /** The order with the ways of least cost; none where a move cannot come. */
-  std::optional<simulation::FoundOrder> order;
+  std::optional<orders::FoundOrder> order;
   std::optional<OrderStatics> statics;  ///< Its statics; none where they are not known.
 };
 
@@ -80,7 +80,7 @@ struct CheckedOrder {
  @param parts  One part of each move, in the order of assembly.
  @param options  Of these, the weights and the stop count. */
 [[nodiscard]] Result<CheckedOrder> CheckOrder(const simulation::Model& model,
-                                              const simulation::OrderRules& rules,
+                                              const orders::OrderRules& rules,
                                               const std::vector<product::OccurrenceId>& parts,
                                               const PlanOptions& options);
 

@@ -13,6 +13,7 @@ simulation::CompileOptions MakeCompileOptions(const PrepareOptions& options) {
   simulation::CompileOptions compile;
   compile.seed = options.seed;
   compile.pairs = options.pairs;
+  compile.search_queries *= options.is_thorough ? sequence::kThoroughness : 1;
   compile.first_parts = options.first_parts;
   compile.base = options.base;
   compile.steps = options.steps;

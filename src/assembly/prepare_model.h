@@ -25,8 +25,9 @@ struct PrepareOptions {
   std::uint64_t seed{1};  ///< Draws the actual sizes of the fits.
   fits::PairChoice pairs{fits::PairChoice::kOfKind};
   std::vector<std::string> first_parts;  ///< Names, paths or ids ("o12"); the others follow.
-  std::string base;  ///< The part that stays in the fixture, likewise; empty: it is found.
-  std::vector<simulation::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
+  std::string base;         ///< The part that stays in the fixture, likewise; empty: it is found.
+  bool is_thorough{false};  ///< Searches sequence::kThoroughness times as long for ways out.
+  std::vector<sequence::SequenceStep> steps;  ///< The whole order, of a plan; empty: it is found.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: contact shapes are always built.
   cad::ProgressFn progress;                          ///< Called by the calling thread; may be null.
   /** Called as simulation::CompileOptions has it; may be null. */

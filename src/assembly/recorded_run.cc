@@ -48,8 +48,8 @@ Result<std::unique_ptr<record::Recorder>> MakeRunRecorder(const Model& model,
   for (std::size_t hand = 0; hand < std::max(session::kHandsOfMeta, hands); ++hand) {
     meta[session::MakeDeviceKey(hand)] = hand < hands ? options.devices[hand] : std::string();
   }
-  if (options.person != simulation::PersonKind::kCareful) {
-    meta["person"] = simulation::ToString(options.person);
+  if (options.person) {
+    meta["person"] = person::ToString(*options.person);
   }
   return MakeRecorder(model, recorder, meta);
 }
@@ -58,7 +58,7 @@ Result<std::vector<Hand>> MakeHands(const Model& model, const RunOptions& option
   std::vector<Hand> hands;
   for (const std::string& device : options.devices) {
     auto hand =
-        MakeHand(model, {device, options.render, simulation::SeedOfHand(options.seed, hands.size()),
+        MakeHand(model, {device, options.render, person::SeedOfHand(options.seed, hands.size()),
                          options.is_realtime, options.person});
     if (!hand) {
       return Unexpected(hand.error());

@@ -31,8 +31,8 @@ struct RunOptions {
   haptics::ForceMapKind force_map{haptics::ForceMapKind::kPublished};
   haptics::PaperGuidance guidance;  ///< Replaces constants of guidance where it has a value.
   simulation::RenderOptions render;
-  /** How simulated persons without a device work. */
-  simulation::PersonKind person{simulation::PersonKind::kCareful};
+  /** How simulated persons without a device work; none: guided hands move the parts. */
+  std::optional<person::PersonKind> person;
   /** Three threads by the clock, as a real device needs them, instead of virtual time on the
    calling thread, in which the same options give the same digest. */
   bool is_realtime{false};

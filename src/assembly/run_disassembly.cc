@@ -32,7 +32,7 @@ Result<DisassemblyPlan> PlanDisassembly(const Model& model, const std::string& p
   }
   options.target = *id;
   const std::string& path = product.occurrences[id->index()].path;
-  if (simulation::FindBase(model.sequence) == *id) {
+  if (sequence::FindBase(model.sequence) == *id) {
     return Fail(ErrorCode::kInvalid,
                 fmt::format("{} is the base, which stays in the fixture", path), product.source,
                 "name another part, or leave --part out to take all others off the base");
@@ -60,7 +60,7 @@ class DisassemblySetup final : public RunSetup {
   DisassemblySetup(std::shared_ptr<const Model> model, std::vector<Hand> hand,
                    const DisassemblyPlan* plan, simulation::Sink* downstream)
       : RunSetup(std::move(model), std::move(hand)),
-        run_(&simulation(), plan, ListPersons().front(), downstream) {
+        run_(&simulation(), plan, ListMovers().front(), downstream) {
     simulation::PutAllInPlace(&simulation());
   }
 
@@ -97,7 +97,7 @@ std::vector<PartResult> ListResults(const DisassemblyPlan& plan,
       add(member, kStopped);
     }
   }
-  for (const simulation::SequenceGap& stuck : plan.stuck) {
+  for (const sequence::SequenceGap& stuck : plan.stuck) {
     add(stuck.occurrence, stuck.reason);
   }
   return parts;

@@ -13,8 +13,8 @@
 namespace hvas::assembly {
 namespace {
 
+using sequence::SequenceStep;
 using simulation::Placement;
-using simulation::SequenceStep;
 
 void Write(const spatial::Pose& X, double out[7]) noexcept {
   const Vec3& p = X.p();
@@ -119,7 +119,7 @@ SteppedRun::SteppedRun(std::shared_ptr<const simulation::Model> model,
     : model_(std::move(model)), options_(options) {
   const SequenceStep& step = this->step();
   const simulation::Body& body = model_->bodies[step.occurrence.index()];
-  X_WB_goal_ = simulation::GoalOf(step, body.X_WB_goal);
+  X_WB_goal_ = sequence::GoalOf(step, body.X_WB_goal);
   haptics::TickOptions tick = MakePersonTick({0, options.rate_hz});
   tick.condition = options.condition;
   tick.guidance.contact_in_holes = options.contact_in_holes;
@@ -131,7 +131,7 @@ SteppedRun::SteppedRun(std::shared_ptr<const simulation::Model> model,
   const spatial::Pose& X_WB = parts[step.occurrence.index()].X_WB;
   const spatial::Pose X_WH(X_WB * simulation::CombineMass(*model_, step).p_BoBcm_B);
   X_HB_ = X_WH.Inverse() * X_WB;
-  hand_ = std::make_unique<simulation::ArmHand>(options.arm, X_WH);
+  hand_ = std::make_unique<person::ArmHand>(options.arm, X_WH);
   keeper_ = std::make_shared<RowKeeper>(&rows_);
   simulation::Execution execution;
   execution.simulation = simulation_.get();
@@ -150,7 +150,7 @@ std::vector<simulation::PartState> SteppedRun::ListBeginning() const {
     const bool is_away =
         step.kind == SequenceStep::Kind::kPark || step.kind == SequenceStep::Kind::kAside;
     parts[id.index()] = {is_away ? Placement::kParked : Placement::kPlaced,
-                         simulation::GoalOf(step, model_->bodies[id.index()].X_WB_goal)};
+                         sequence::GoalOf(step, model_->bodies[id.index()].X_WB_goal)};
   };
   for (std::size_t i = 0; i < options_.step; ++i) {
     const SequenceStep& step = model_->sequence.steps[i];

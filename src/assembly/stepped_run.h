@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 #include "haptics/options.h"
-#include "simulation/arm_hand.h"
+#include "person/arm_hand.h"
 #include "simulation/executors.h"
 #include "simulation/model.h"
 #include "simulation/simulation.h"
@@ -28,8 +28,8 @@ struct SteppedOptions {
   bool contact_in_holes{false};
   /** Threads go in by turning, and are tightened (GuidanceOptions::threads_turn). */
   bool threads_turn{false};
-  simulation::PersonOptions arm;  ///< Impedance of the arm; its other habits are not used.
-  double rate_hz{1000};           ///< Rate of the haptic tick, 1000 to 8000 [Hz].
+  person::PersonOptions arm;  ///< Impedance of the arm; its other habits are not used.
+  double rate_hz{1000};       ///< Rate of the haptic tick, 1000 to 8000 [Hz].
 };
 
 /** One tick in plain numbers: programs in other languages read them where they are. Positions in m,
@@ -98,7 +98,7 @@ class SteppedRun {
 
   [[nodiscard]] const simulation::Model& model() const { return *model_; }
 
-  [[nodiscard]] const simulation::SequenceStep& step() const {
+  [[nodiscard]] const sequence::SequenceStep& step() const {
     return model_->sequence.steps[options_.step];
   }
 
@@ -121,7 +121,7 @@ class SteppedRun {
   std::vector<TickRow> rows_;
   std::vector<ContactRow> contacts_;
   std::unique_ptr<simulation::Simulation> simulation_;
-  std::unique_ptr<simulation::ArmHand> hand_;
+  std::unique_ptr<person::ArmHand> hand_;
   std::shared_ptr<RowKeeper> keeper_;
   std::unique_ptr<simulation::Lockstep> lockstep_;
 };

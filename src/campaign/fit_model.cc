@@ -130,7 +130,7 @@ Result<FitModel> FitModel::Make(const product::Product& product, const SizeVaria
 
 Result<void> FitModel::AddMate(const product::Product& product, const product::Mate& mate,
                                Diagnostics* diagnostics) {
-  const auto fit = simulation::MakeFitToDraw(product, mate, fits::PairChoice::kAny);
+  const auto fit = sequence::MakeFitToDraw(product, mate, fits::PairChoice::kAny);
   if (!fit) {
     diagnostics->Warn("fit-undefined", fmt::format("mate m{}", mate.id.value()),
                       fit.error().message, "assign another fit in the plan");
@@ -175,7 +175,7 @@ void FitModel::DrawFactors(std::uint64_t seed, std::span<std::uint64_t> values) 
   std::size_t next = 0;
   for (std::size_t i = 0; i < mates_.size(); ++i) {
     const std::size_t end = i + 1 < mates_.size() ? mates_[i + 1].first_factor : factors_.size();
-    Random random(simulation::CalcFitSeed(seed, mates_[i].id));
+    Random random(sequence::CalcFitSeed(seed, mates_[i].id));
     for (; next < end; ++next) {
       values[next] = random.NextBits();
     }
@@ -195,7 +195,7 @@ fits::FitForceParameters FitModel::DrawParameters(std::size_t mate,
   if (drawn.friction) {
     parameters.friction = {*drawn.friction, *drawn.friction, *drawn.friction, *drawn.friction};
     parameters.lead_in_angle =
-        std::min(parameters.lead_in_angle, simulation::CalcSteepestLeadIn(*drawn.friction));
+        std::min(parameters.lead_in_angle, sequence::CalcSteepestLeadIn(*drawn.friction));
   }
   return parameters;
 }

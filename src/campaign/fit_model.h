@@ -13,7 +13,7 @@
 #include "campaign/run_result.h"
 #include "fits/size_distribution.h"
 #include "product/product.h"
-#include "simulation/fit_of_mate.h"
+#include "sequence/fit_of_mate.h"
 
 namespace hvas::campaign {
 
@@ -31,7 +31,7 @@ struct Factor {
 struct FittedMate {
   product::MateId id;
   std::string name;  ///< "m0 H7/p6 bushing/shaft", for people.
-  simulation::FitToDraw fit;
+  sequence::FitToDraw fit;
   std::optional<fits::SizeDistribution> hole, shaft;  ///< Deviations; none: as drawn or measured.
   std::size_t joint{0};         ///< Mates with one number join one pair of parts.
   std::size_t first_factor{0};  ///< Index of its first value among those of all factors.
@@ -45,7 +45,7 @@ struct MadeFit {
 };
 
 /** All fits of a product, and how they are made: the method `fits`. Immutable. Factors have values
- of 64 random bits, which are those of simulation::MakeFitForce for the same seed: with the spread
+ of 64 random bits, which are those of sequence::MakeFitForce for the same seed: with the spread
  kZone, a run has the sizes of `hvas assemble --sizes any --seed SEED`. */
 class FitModel {
  public:

@@ -31,7 +31,8 @@ constexpr int kMostShardRuns = 1'000'000;              // A shard is made in mem
 constexpr double kMostSeeds = 2'000'000'000;           // of one cell: what an int has
 constexpr double kLargestPress = 1e9;                  // [N]: no press is so strong
 constexpr double kLargestDeviation_um = 10'000;        // beyond the widest zone of ISO 286
-constexpr std::array<std::string_view, 3> kPersons{"careful", "hasty", "stiff"};
+/** In the order of simulation::PersonKind, after the guided hand, which is no person. */
+constexpr std::array<std::string_view, 4> kPersons{"guided", "careful", "hasty", "stiff"};
 
 /** Whether a text is a valid id: ids are joined by " / " in names of cells. */
 bool IsVariantId(std::string_view text) {
@@ -224,7 +225,7 @@ class PlanReader {
   }
 
   void ReadPersons(YamlFields* fields) {
-    const auto words = fields->TextsOr("persons", {"careful"});
+    const auto words = fields->TextsOr("persons", {"guided"});
     for (const std::string& word : words) {
       const auto found = std::find(kPersons.begin(), kPersons.end(), word);
       if (found == kPersons.end()) {
@@ -233,7 +234,9 @@ class PlanReader {
                           fmt::format("write one or more of: {}", fmt::join(kPersons, ", ")));
         return;
       }
-      plan_->persons.push_back(static_cast<simulation::PersonKind>(found - kPersons.begin()));
+      const auto index = found - kPersons.begin();
+      plan_->persons.push_back(
+          index == 0 ? std::nullopt : std::optional(static_cast<person::PersonKind>(index - 1)));
     }
     const bool has_choice = plan_->method == Method::kAssemble;
     if (words.empty() || words.size() > kPersons.size() || (!has_choice && words.size() > 1)) {
@@ -337,7 +340,7 @@ std::string DescribeCell(const Plan& plan, const Cell& cell) {
     words.push_back(plan.materials[cell.material].id);
   }
   if (plan.persons.size() > 1) {
-    words.emplace_back(simulation::ToString(plan.persons[cell.person]));
+    words.emplace_back(Plan::NamePerson(plan.persons[cell.person]));
   }
   return words.empty() ? "all" : fmt::format("{}", fmt::join(words, " / "));
 }

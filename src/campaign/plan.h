@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "simulation/simulated_person.h"
+#include "person/simulated_person.h"
 
 /** Campaigns: a plan names products, fits, spreads of sizes, materials, persons and seeds, and each
  combination is one run, that is one product as made (docs/campaigns.md). */
@@ -95,7 +95,14 @@ struct Plan {
   std::vector<FitVariant> fits;
   std::vector<SizeVariant> sizes;
   std::vector<MaterialVariant> materials;
-  std::vector<simulation::PersonKind> persons;
+  /** How the simulated person works; none: a guided hand moves the parts. */
+  std::vector<std::optional<person::PersonKind>> persons;
+
+  /** The word of a person in a plan. */
+  [[nodiscard]] static const char* NamePerson(const std::optional<person::PersonKind>& person) {
+    return person ? person::ToString(*person) : "guided";
+  }
+
   Seeds seeds;
   double press_force{0};  ///< Largest force of the press [N]; 0: without limit.
   bool may_yield{true};   ///< Whether a product with a part beyond its elastic limit is complete.

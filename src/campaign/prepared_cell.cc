@@ -224,8 +224,8 @@ std::string DescribePlay(const Plan& plan, const RunResult& run) {
   for (const std::string& fit : plan.fits[cell.fit].assignments) {
     words += " --fit " + QuoteWord(fit);
   }
-  if (const auto person = plan.persons[cell.person]; person != simulation::PersonKind::kCareful) {
-    words += fmt::format(" --person {}", simulation::ToString(person));
+  if (const auto person = plan.persons[cell.person]) {
+    words += fmt::format(" --person {}", person::ToString(*person));
   }
   return words + fmt::format(" --sizes any --seed {} --record run-{}.hvasrec", run.seed, run.run);
 }

@@ -13,14 +13,14 @@
 #include "evidence/session_data.h"
 #include "haptics/constraint_solver.h"
 #include "haptics/tick_output.h"
+#include "paths/path.h"
+#include "sequence/sequence.h"
 #include "session/recorded_model.h"
-#include "simulation/sequence.h"
-#include "sweep/path.h"
 
 namespace hvas::evidence {
 namespace {
 
-using simulation::SequenceStep;
+using sequence::SequenceStep;
 
 constexpr double kPlannedSpeed = 0.04;      // [m/s], as the simulated person inserts.
 constexpr double kPlannedApproach = 20e-3;  // [m] before the place where it engages: a choice.
@@ -77,8 +77,8 @@ class HoldGatherer {
 };
 
 /** Poses of a part from outside to its place. */
-sweep::Path MakeWayIn(const SequenceStep& step, const spatial::Pose& X_WB_goal) {
-  sweep::Path way = step.way;
+paths::Path MakeWayIn(const SequenceStep& step, const spatial::Pose& X_WB_goal) {
+  paths::Path way = step.way;
   if (way.empty()) {
     const auto at = [&](double travel) {
       return spatial::Pose(X_WB_goal.q(), X_WB_goal.p() + travel * step.extraction_W);
@@ -201,9 +201,9 @@ std::vector<Demonstration> ListPlannedWays(const simulation::Model& model, doubl
     Demonstration demonstration;
     demonstration.part = model.product->occurrences[step.occurrence.index()].path;
     demonstration.source = "plan";
-    demonstration.X_WB_goal = simulation::GoalOf(step, body.X_WB_goal);
+    demonstration.X_WB_goal = sequence::GoalOf(step, body.X_WB_goal);
     demonstration.is_seated = true;
-    const sweep::Path way = sweep::Resample(MakeWayIn(step, demonstration.X_WB_goal),
+    const paths::Path way = paths::Resample(MakeWayIn(step, demonstration.X_WB_goal),
                                             body.shape->box_B(), kPlannedSpeed / rate);
     const Vec3 p_BCm = simulation::CombineMass(model, step).p_BoBcm_B;
     for (const spatial::Pose& X_WB : way) {

@@ -15,9 +15,9 @@
 namespace hvas::evidence {
 namespace {
 
+using orders::GapReason;
 using product::OccurrenceId;
-using simulation::GapReason;
-using simulation::MetFaces;
+using sequence::MetFaces;
 using simulation::Model;
 
 // Pixels of the pictures by which the view is chosen: choices.
@@ -35,7 +35,7 @@ void Mark(std::uint32_t face, std::vector<std::uint32_t>* marked) {
 
 std::vector<PictureBody> MakeBodies(const Model& model, const GapReason& reason) {
   std::map<OccurrenceId, std::vector<std::uint32_t>> marked;  // Faces of each part that is drawn.
-  for (std::size_t i = 0; i < std::min(simulation::kToldStops, reason.stops.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(orders::kToldStops, reason.stops.size()); ++i) {
     const MetFaces& stop = reason.stops[i];
     if (stop.other.is_valid()) {
       Mark(stop.other_face, &marked[stop.other]);

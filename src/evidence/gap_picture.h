@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 
 namespace hvas::evidence {
 
@@ -15,10 +15,10 @@ inline constexpr int kGapPictureHeight = 360;
  them; from where most of them is seen. The same bytes every time. Empty where the reason has no
  such way, or nothing stops the part on it. */
 [[nodiscard]] std::string MakeGapPicture(const simulation::Model& model,
-                                         const simulation::GapReason& reason);
+                                         const orders::GapReason& reason);
 
 /** Describes such a picture in one sentence, for who does not see it. */
 [[nodiscard]] std::string DescribeGapPicture(const simulation::Model& model,
-                                             const simulation::GapReason& reason);
+                                             const orders::GapReason& reason);
 
 }  // namespace hvas::evidence

@@ -9,10 +9,10 @@
 #include "base/parse_json.h"
 #include "evidence/session_data.h"
 #include "haptics/constraint_solver.h"
+#include "sequence/fit_of_mate.h"
 #include "session/json_values.h"
 #include "session/recorded_model.h"
 #include "session/session_recorder.h"
-#include "simulation/fit_of_mate.h"
 
 namespace hvas::evidence {
 namespace {
@@ -138,7 +138,7 @@ void DrawFits(Summary* summary) {
   Diagnostics ignored;  // told of when the session was prepared
   for (const product::Mate& mate : product.mates) {
     const auto fit =
-        mate.fit ? simulation::MakeFitForce(product, mate, number, pairs, &ignored) : nullptr;
+        mate.fit ? sequence::MakeFitForce(product, mate, number, pairs, &ignored) : nullptr;
     if (fit == nullptr) {
       continue;
     }

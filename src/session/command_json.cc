@@ -14,12 +14,12 @@
 namespace hvas::session {
 namespace {
 
+using sequence::SequenceStep;
 using simulation::GivenCommand;
 using simulation::PartState;
-using simulation::SequenceStep;
 
 constexpr std::array kPlacements{"loose", "held", "placed", "parked", "pending"};
-constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return"};
+constexpr std::array kStepKinds{"base", "insert", "park", "remove", "aside", "return", "assume"};
 
 Unexpected Refuse(const std::string& what, const std::string& field) {
   return Fail(ErrorCode::kUnreadable, fmt::format("{} has no valid \"{}\".", what, field));

@@ -41,8 +41,8 @@ struct Beginning {
     const record::Command& command, const std::vector<simulation::PartState>& before,
     std::size_t hands);
 
-[[nodiscard]] Json MakeStepsJson(const std::vector<simulation::SequenceStep>& steps);
-[[nodiscard]] Result<std::vector<simulation::SequenceStep>> ParseSteps(const Json& json,
-                                                                       std::size_t part_count);
+[[nodiscard]] Json MakeStepsJson(const std::vector<sequence::SequenceStep>& steps);
+[[nodiscard]] Result<std::vector<sequence::SequenceStep>> ParseSteps(const Json& json,
+                                                                     std::size_t part_count);
 
 }  // namespace hvas::session

@@ -13,9 +13,9 @@
 #include "base/parse_json.h"
 #include "product/accessories.h"
 #include "product/product_io.h"
+#include "sequence/extraction.h"
 #include "session/command_json.h"
 #include "session/deformable_json.h"
-#include "simulation/extraction.h"
 
 namespace hvas::session {
 namespace {
@@ -41,12 +41,12 @@ std::string CalcFingerprint(const simulation::Model& model) {
     digest.AddText(model.product->part_of(body.occurrence).shape_hash);
     digest.AddDouble(body.shape->voxel());
   }
-  for (const simulation::DrawnOverlap& overlap : model.sequence.overlaps) {
+  for (const sequence::DrawnOverlap& overlap : model.sequence.overlaps) {
     digest.AddInt(overlap.a.value());
     digest.AddInt(overlap.b.value());
     digest.AddDouble(overlap.allowed);
   }
-  for (const simulation::GivingPair& give : model.sequence.gives) {
+  for (const sequence::GivingPair& give : model.sequence.gives) {
     digest.AddInt(give.flexible.value());
     digest.AddInt(give.other.value());
     digest.AddDouble(give.depth);
@@ -57,7 +57,7 @@ std::string CalcFingerprint(const simulation::Model& model) {
     digest.AddDouble(press.compression);
     digest.AddDouble(press.force);
   }
-  for (const simulation::FaceRelief& relief : model.sequence.reliefs) {
+  for (const sequence::FaceRelief& relief : model.sequence.reliefs) {
     digest.AddInt(relief.occurrence.value());
     digest.AddInt(relief.face);
     digest.AddDouble(relief.depth);
@@ -272,8 +272,8 @@ Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(record::Reader* 
     return Unexpected(steps.error());
   }
   std::vector<bool> has_step(product.occurrences.size(), false);
-  for (const simulation::SequenceStep& step : *steps) {
-    for (const product::OccurrenceId part : simulation::UnitOf(step)) {
+  for (const sequence::SequenceStep& step : *steps) {
+    for (const product::OccurrenceId part : sequence::UnitOf(step)) {
       has_step[part.index()] = true;
     }
   }

@@ -11,21 +11,21 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "orders/hand_time.h"
 #include "product/fastener_name.h"
 #include "product/words.h"
 #include "shopfloor/instruction_words.h"
 #include "shopfloor/order_arrow.h"
-#include "simulation/hand_time.h"
 
 namespace hvas::shopfloor {
 namespace {
 
 using assembly::OrderPlan;
+using orders::FreeMove;
 using product::FitKind;
 using product::Mate;
 using product::MateKind;
 using product::OccurrenceId;
-using simulation::FreeMove;
 using simulation::Model;
 
 // Limits of Boothroyd and Dewhurst's handling codes [m].
@@ -74,18 +74,18 @@ std::vector<Coming> ListComing(const Model& model, const OrderPlan& plan) {
       list.push_back(coming);
     }
   };
-  for (const simulation::SequenceStep& step : plan.rules.first) {
-    add({step.occurrence, step.extraction_W, step.kind == simulation::SequenceStep::Kind::kBase});
+  for (const sequence::SequenceStep& step : plan.rules.first) {
+    add({step.occurrence, step.extraction_W, step.kind == sequence::SequenceStep::Kind::kBase});
   }
-  const simulation::FoundOrder& best = assembly::BestOrder(plan);
-  const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan.rules, best);
+  const orders::FoundOrder& best = assembly::BestOrder(plan);
+  const std::vector<orders::HandWork> work = orders::ListHandWork(plan.rules, best);
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const FreeMove& move = plan.rules.moves[best.moves[i]];
     Coming coming{move.parts.front(), move.ways[best.ways[i]].step.extraction_W};
     coming.is_bound_by_tool = !move.tool.empty();
     coming.reach = work[i].reach;
     coming.press = work[i].press;
-    coming.is_cramped = !simulation::ListInToolSpace(plan.rules, best, i).empty();
+    coming.is_cramped = !orders::ListInToolSpace(plan.rules, best, i).empty();
     if (!plan.statics.empty() && plan.statics.front().holds[i]) {
       const auto& holds = *plan.statics.front().holds[i];
       coming.is_held = std::find(holds.begin(), holds.end(), coming.part) != holds.end();
@@ -327,7 +327,7 @@ std::map<OccurrenceId, OccurrenceId> FindLockedOut(const Model& model, const Ord
 NeedOfPart FindNeed(const Model& model, const Coming& coming,
                     const std::map<OccurrenceId, OccurrenceId>& locked_out) {
   NeedOfPart need;
-  need.is_first = coming.is_base && coming.part == simulation::FindBase(model.sequence);
+  need.is_first = coming.is_base && coming.part == sequence::FindBase(model.sequence);
   need.is_fastener = IsFastener(model, coming.part);
   if (need.is_fastener) {
     return need;
@@ -440,10 +440,9 @@ class AdviceFinder {
   }
 
   void TryOneDirection() {
-    const simulation::OrderCounts& counts = assembly::BestOrder(plan_).counts;
-    const double seconds =
-        simulation::kModSeconds * (simulation::kTurnMods * counts.turns +
-                                   simulation::kOtherWayMods * counts.direction_changes);
+    const orders::OrderCounts& counts = assembly::BestOrder(plan_).counts;
+    const double seconds = orders::kModSeconds * (orders::kTurnMods * counts.turns +
+                                                  orders::kOtherWayMods * counts.direction_changes);
     if (seconds > 0) {
       advice_.push_back(
           {fmt::format("all parts from one direction: {} turns of the product and {} changes of "

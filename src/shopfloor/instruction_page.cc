@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "orders/order_search.h"
 #include "pages/embedded_image.h"
 #include "pages/html_page.h"
 #include "shopfloor/most_sequence.h"
 #include "shopfloor/motion_code.h"
 #include "shopfloor/step_picture.h"
-#include "simulation/order_search.h"
 
 namespace hvas::shopfloor {
 namespace {
@@ -109,7 +109,7 @@ class PageMaker {
         MakeTile(words_.steps, std::to_string(plan_.steps.size())) +
         MakeTile(words_.turns, std::to_string(turns)) +
         MakeTile(fmt::format("{}, MODAPTS", words_.time),
-                 fmt::format("{:.0f} s", simulation::kModSeconds * plan_.mods)) +
+                 fmt::format("{:.0f} s", orders::kModSeconds * plan_.mods)) +
         MakeTile(fmt::format("{}, BasicMOST", words_.time), fmt::format("{:.0f} s", most));
     if (!options_.record.empty()) {
       double recorded = 0;
@@ -216,7 +216,7 @@ class PageMaker {
       const double recorded = SumRecorded(step);
       AddFact(words_.step_time,
               fmt::format("{} (MODAPTS), {} (BasicMOST)",
-                          FormatSeconds(simulation::kModSeconds * step.mods),
+                          FormatSeconds(orders::kModSeconds * step.mods),
                           FormatSeconds(SumSeconds(ListMostSequences(step.motions)))) +
                   (recorded > 0 ? "; " + fmt::format(fmt::runtime(words_.recorded), recorded) : ""),
               &facts);
@@ -266,10 +266,10 @@ class PageMaker {
       return {};
     }
     std::string rows;
-    for (const simulation::HandMotion& motion : step.motions) {
+    for (const orders::HandMotion& motion : step.motions) {
       rows += fmt::format("<tr><td>{}</td><td class=\"l\">{}</td><td>{}</td><td>{:.3f}</td></tr>",
                           Escape(motion.code), Escape(DescribeMotion(motion, options_.language)),
-                          motion.mods, simulation::kModSeconds * motion.mods);
+                          motion.mods, orders::kModSeconds * motion.mods);
     }
     std::string sequences;
     for (const MostSequence& sequence : ListMostSequences(step.motions)) {

@@ -11,7 +11,7 @@
 namespace hvas::shopfloor {
 namespace {
 
-using simulation::MotionPurpose;
+using orders::MotionPurpose;
 
 constexpr InstructionWords kEnglish{
     .title = "{}: work instructions",
@@ -166,7 +166,7 @@ constexpr std::array kToolWords{ToolWord{"hexagon key", "Innensechskantschlüsse
                                 ToolWord{"slot screwdriver", "Schlitz-Schraubendreher"},
                                 ToolWord{"screwdriver", "Schraubendreher"}};
 
-std::string DescribeInEnglish(const simulation::HandMotion& motion) {
+std::string DescribeInEnglish(const orders::HandMotion& motion) {
   switch (motion.purpose) {
     case MotionPurpose::kTurnProduct:
       return "turn the product over";
@@ -200,7 +200,7 @@ std::string DescribeInEnglish(const simulation::HandMotion& motion) {
   return {};
 }
 
-std::string DescribeInGerman(const simulation::HandMotion& motion) {
+std::string DescribeInGerman(const orders::HandMotion& motion) {
   switch (motion.purpose) {
     case MotionPurpose::kTurnProduct:
       return "Produkt wenden";
@@ -297,7 +297,7 @@ std::string DescribeStep(const simulation::Model& model, const WorkStep& step, L
   return title;
 }
 
-std::string DescribeMotion(const simulation::HandMotion& motion, Language language) {
+std::string DescribeMotion(const orders::HandMotion& motion, Language language) {
   return language == Language::kGerman ? DescribeInGerman(motion) : DescribeInEnglish(motion);
 }
 

@@ -81,7 +81,7 @@ struct InstructionWords {
 /** "295 N", "1.16 kN". @param force  [N] */
 [[nodiscard]] std::string FormatForce(double force);
 
-/** The name of a tool (simulation::FreeMove::tool) in a language. */
+/** The name of a tool (orders::FreeMove::tool) in a language. */
 [[nodiscard]] std::string TranslateTool(const std::string& tool, Language language);
 
 [[nodiscard]] const InstructionWords& WordsOf(Language language);
@@ -99,9 +99,9 @@ struct InstructionWords {
                                        Language language);
 
 /** What a motion of the hand is for, with its amount: "bring the part 0.42 m". */
-[[nodiscard]] std::string DescribeMotion(const simulation::HandMotion& motion, Language language);
+[[nodiscard]] std::string DescribeMotion(const orders::HandMotion& motion, Language language);
 
 /** What a sequence of BasicMOST is for: "bring the part". */
-[[nodiscard]] std::string DescribeSequence(simulation::MotionPurpose purpose, Language language);
+[[nodiscard]] std::string DescribeSequence(orders::MotionPurpose purpose, Language language);
 
 }  // namespace hvas::shopfloor

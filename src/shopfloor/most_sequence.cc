@@ -11,8 +11,8 @@
 namespace hvas::shopfloor {
 namespace {
 
-using simulation::HandMotion;
-using simulation::MotionPurpose;
+using orders::HandMotion;
+using orders::MotionPurpose;
 
 // The indices of BasicMOST that are used for tools.
 constexpr std::array kIndices{0, 1, 3, 6, 10, 16, 24, 32, 42, 54};
@@ -53,9 +53,9 @@ class SequenceMaker {
         grasp_ = 3;
         break;
       case MotionPurpose::kPut:
-        place_ = motion.mods >= simulation::CalcPutMods(simulation::PutCare::kExact)  ? 6
-                 : motion.mods >= simulation::CalcPutMods(simulation::PutCare::kSome) ? 3
-                                                                                      : 1;
+        place_ = motion.mods >= orders::CalcPutMods(orders::PutCare::kExact)  ? 6
+                 : motion.mods >= orders::CalcPutMods(orders::PutCare::kSome) ? 3
+                                                                              : 1;
         break;
       case MotionPurpose::kPress:
         place_ = 6;
@@ -67,7 +67,7 @@ class SequenceMaker {
         has_tool_ = true;
         break;
       case MotionPurpose::kCrank:
-        crank_ += simulation::kModSeconds * motion.mods;
+        crank_ += orders::kModSeconds * motion.mods;
         break;
       case MotionPurpose::kTurnProduct:
         Push("A1 B0 G3 A1 B0 P3 A0", motion.purpose);

@@ -3,15 +3,15 @@
 #include <string>
 #include <vector>
 
-#include "simulation/hand_time.h"
+#include "orders/hand_time.h"
 
 namespace hvas::shopfloor {
 
 /** A sequence of BasicMOST: "A1 B0 G1 A1 B0 P3 A0". */
 struct MostSequence {
   std::string code;
-  simulation::MotionPurpose purpose{simulation::MotionPurpose::kBring};  ///< What it is for.
-  double seconds{0};                                                     ///< [s]
+  orders::MotionPurpose purpose{orders::MotionPurpose::kBring};  ///< What it is for.
+  double seconds{0};                                             ///< [s]
 };
 
 /** Makes sequences of BasicMOST from the motions of a step, by the same distances, weights, sizes
@@ -20,7 +20,7 @@ struct MostSequence {
  is used by A1 B0 G1 A1 B0 P3 F A1 B0 P1 A0, with the least index F that lasts as long as the turns
  by MODAPTS: the table of F is its owner's and is not here. */
 [[nodiscard]] std::vector<MostSequence> ListMostSequences(
-    const std::vector<simulation::HandMotion>& motions);
+    const std::vector<orders::HandMotion>& motions);
 
 /** The sum over sequences [s]. */
 [[nodiscard]] double SumSeconds(const std::vector<MostSequence>& sequences);

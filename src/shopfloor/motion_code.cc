@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "simulation/hand_time.h"
+#include "orders/hand_time.h"
 
 namespace hvas::shopfloor {
 namespace {
@@ -58,10 +58,10 @@ const TimeCard& ModaptsCard() {
   static const TimeCard card = [] {
     TimeCard made{"MODAPTS", {}};
     for (const ModCode& code : kModCodes) {
-      made.seconds[code.code] = simulation::kModSeconds * code.mods;
+      made.seconds[code.code] = orders::kModSeconds * code.mods;
     }
     for (int load = 3; load <= kMostLoad; ++load) {
-      made.seconds[fmt::format("L{}", load)] = simulation::kModSeconds * load;
+      made.seconds[fmt::format("L{}", load)] = orders::kModSeconds * load;
     }
     return made;
   }();

@@ -5,10 +5,10 @@
 namespace hvas::shopfloor {
 namespace {
 
-using simulation::FreeMove;
-using simulation::Obstacle;
-using simulation::OrderedWay;
-using simulation::OrderRules;
+using orders::FreeMove;
+using orders::OrderedWay;
+using orders::OrderRules;
+using sequence::Obstacle;
 
 bool StandsInAllWays(const FreeMove& move, std::size_t other) {
   return std::all_of(move.ways.begin(), move.ways.end(), [other](const OrderedWay& way) {

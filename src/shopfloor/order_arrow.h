@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulation/order_rules.h"
+#include "orders/order_rules.h"
 
 namespace hvas::shopfloor {
 
@@ -30,6 +30,6 @@ struct OrderArrow {
 };
 
 /** All arrows of an order's rules, by the moves that come first. */
-[[nodiscard]] std::vector<OrderArrow> ListArrows(const simulation::OrderRules& rules);
+[[nodiscard]] std::vector<OrderArrow> ListArrows(const orders::OrderRules& rules);
 
 }  // namespace hvas::shopfloor

@@ -8,7 +8,7 @@
 
 #include "base/units.h"
 #include "contact/shape.h"
-#include "sweep/part_field.h"
+#include "paths/part_field.h"
 
 namespace hvas::shopfloor {
 namespace {
@@ -127,7 +127,7 @@ class RepeatCheck {
   double tolerance_;
   Mat3 spread_{Mat3::Zero()};  // Second moments of the points about their centre [m^2].
   std::vector<Vec3> points_;
-  sweep::PartField field_;
+  paths::PartField field_;
 };
 
 /** The least turn about an axis that repeats the part [deg]. A part that four turns with no common

@@ -8,17 +8,17 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "simulation/order_search.h"
+#include "orders/order_search.h"
 
 namespace hvas::shopfloor {
 namespace {
 
 using assembly::OrderPlan;
+using orders::FreeMove;
 using product::Mate;
 using product::OccurrenceId;
-using simulation::FreeMove;
+using sequence::SequenceStep;
 using simulation::Model;
-using simulation::SequenceStep;
 
 bool IsIn(const std::vector<OccurrenceId>& parts, OccurrenceId id) {
   return std::find(parts.begin(), parts.end(), id) != parts.end();
@@ -63,15 +63,15 @@ class WorkPlanMaker {
     for (const SequenceStep& step : plan_.rules.first) {
       AddFirst(step);
     }
-    const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan_.rules, best_);
-    const std::vector<Vec3> ups = simulation::ListUpSides(plan_.rules, best_);
+    const std::vector<orders::HandWork> work = orders::ListHandWork(plan_.rules, best_);
+    const std::vector<Vec3> ups = orders::ListUpSides(plan_.rules, best_);
     for (std::size_t i = 0; i < best_.moves.size(); ++i) {
       AddMove(i, work[i], ups);
     }
     for (const WorkStep& step : result_.steps) {
       result_.mods += step.mods;
     }
-    for (const simulation::SequenceGap& gap : model_.sequence.gaps) {
+    for (const sequence::SequenceGap& gap : model_.sequence.gaps) {
       result_.left_out.push_back(gap.occurrence);
     }
     AddBill();
@@ -107,7 +107,7 @@ class WorkPlanMaker {
     AddOrJoin(std::move(step));
   }
 
-  void AddMove(std::size_t place, const simulation::HandWork& work, const std::vector<Vec3>& ups) {
+  void AddMove(std::size_t place, const orders::HandWork& work, const std::vector<Vec3>& ups) {
     const std::size_t number = best_.moves[place];
     const FreeMove& move = plan_.rules.moves[number];
     const SequenceStep& from = move.ways[best_.ways[place]].step;
@@ -213,7 +213,7 @@ class WorkPlanMaker {
 
   const Model& model_;
   const OrderPlan& plan_;
-  const simulation::FoundOrder& best_;
+  const orders::FoundOrder& best_;
   std::vector<OrderArrow> arrows_;
   std::vector<OccurrenceId> there_;   // What is there of the product, or of the subassembly.
   std::vector<OccurrenceId> billed_;  // Those of a subassembly come twice.

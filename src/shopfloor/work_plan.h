@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "assembly/plan_order.h"
+#include "orders/hand_time.h"
 #include "shopfloor/order_arrow.h"
-#include "simulation/hand_time.h"
 #include "simulation/model.h"
 
 namespace hvas::shopfloor {
@@ -52,12 +52,12 @@ struct WorkStep {
   std::string tool;                   ///< Empty: none.
   std::vector<WorkFit> fits;          ///< Fits of the first leading part.
   std::vector<WorkThread> threads;
-  double press{0};                              ///< What the fits of one part need [N].
-  double force{0};                              ///< Force of the hands for one part [N].
-  std::vector<product::OccurrenceId> holds;     ///< What has to be held after it.
-  std::vector<OrderArrow> before;               ///< What it has to come before, and is not implied.
-  std::vector<simulation::HandMotion> motions;  ///< Motions for all its parts.
-  int mods{0};                                  ///< Their sum [MOD].
+  double press{0};                           ///< What the fits of one part need [N].
+  double force{0};                           ///< Force of the hands for one part [N].
+  std::vector<product::OccurrenceId> holds;  ///< What has to be held after it.
+  std::vector<OrderArrow> before;            ///< What it has to come before, and is not implied.
+  std::vector<orders::HandMotion> motions;   ///< Motions for all its parts.
+  int mods{0};                               ///< Their sum [MOD].
 };
 
 /** A line of the bill of parts. */

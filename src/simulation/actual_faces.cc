@@ -8,7 +8,7 @@
 
 #include "mates/mate_kind.h"
 #include "mates/prismatic_fits.h"
-#include "simulation/mate_way.h"
+#include "sequence/mate_way.h"
 #include "simulation/model.h"
 
 namespace hvas::simulation {
@@ -41,7 +41,7 @@ Overlap FindOverlap(const product::Product& product, const Mate& mate) {
 bool IsMouthHigh(const ActualFacesInput& input, const Mate& mate) {
   const product::Occurrence& hole = input.product->occurrences[mate.a.occurrence.index()];
   const Vec3 z_W = (hole.X_WB * mate.a.X_BM).q() * Vec3::UnitZ();
-  const Vec3 way_W = FindWayOut(*input.sequence, mate);
+  const Vec3 way_W = sequence::FindWayOut(*input.sequence, mate);
   return way_W.isZero() || way_W.dot(z_W) > 0;
 }
 
@@ -208,7 +208,7 @@ class Collector {
     GiveShaft(mate, offset);
   }
 
-  void Relieve(const FaceRelief& relief) {
+  void Relieve(const sequence::FaceRelief& relief) {
     contact::FaceOffset& offset = faces_[relief.occurrence.index()].offsets[relief.face];
     const auto lower = [&relief](double value) {
       return std::max(-contact::FaceOffsets::kLargest, value - relief.depth);
@@ -314,7 +314,7 @@ std::vector<std::shared_ptr<const contact::FaceOffsets>> MakeActualFaces(
       collector.Add(*mate, *fit, diagnostics);
     }
   }
-  for (const FaceRelief& relief : input.sequence->reliefs) {
+  for (const sequence::FaceRelief& relief : input.sequence->reliefs) {
     collector.Relieve(relief);
   }
   return collector.Make(diagnostics);

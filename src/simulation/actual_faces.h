@@ -8,7 +8,7 @@
 #include "contact/face_offsets.h"
 #include "fits/fit_force.h"
 #include "product/product.h"
-#include "simulation/sequence.h"
+#include "sequence/sequence.h"
 
 namespace hvas::simulation {
 
@@ -19,7 +19,8 @@ struct ActualFacesInput {
   const product::Product* product{nullptr};
   std::vector<std::shared_ptr<const contact::Shape>> shapes;
   std::vector<std::shared_ptr<const fits::FitForce>> fits;  ///< Null where there is none.
-  const Sequence* sequence{nullptr};  ///< Says which end of a hole is its mouth, and has reliefs.
+  const sequence::Sequence* sequence{
+      nullptr};  ///< Says which end of a hole is its mouth, and has reliefs.
   /** Fits that leave no room answer for their force; else contact has their interference. */
   bool fits_answer{true};
 };

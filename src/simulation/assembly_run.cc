@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "simulation/extraction.h"
+#include "sequence/extraction.h"
 #include "simulation/table_subassembly.h"
 
 namespace hvas::simulation {
@@ -16,32 +16,30 @@ using product::OccurrenceId;
 
 namespace {
 
-constexpr int kMostTries = 3;  // Of a part by simulated persons: one, and two more. A choice.
-
 /** Whether a part hangs together with the base, or with a fixture, through neighbours. */
 bool IsConnectedWithBase(const Model& model, OccurrenceId id) {
   std::vector<OccurrenceId> all;
   for (const Body& body : model.bodies) {
     all.push_back(body.occurrence);
   }
-  const auto connected = ListConnected(id, all, model.sequence.neighbours);
-  const OccurrenceId base = FindBase(model.sequence);
+  const auto connected = sequence::ListConnected(id, all, model.sequence.neighbours);
+  const OccurrenceId base = sequence::FindBase(model.sequence);
   return std::any_of(connected.begin(), connected.end(), [&](OccurrenceId other) {
     return other == base || model.bodies[other.index()].role == BodyRole::kFixture;
   });
 }
 
-bool IsSinglePart(const SequenceStep& step) {
-  return step.kind == SequenceStep::Kind::kInsert && step.members.empty();
+bool IsSinglePart(const sequence::SequenceStep& step) {
+  return step.kind == sequence::SequenceStep::Kind::kInsert && step.members.empty();
 }
 
 }  // namespace
 
-AssemblyRun::AssemblyRun(Simulation* simulation, const Persons& persons, Sink* downstream)
+AssemblyRun::AssemblyRun(Simulation* simulation, const TaskOperators& movers, Sink* downstream)
     : PartRun(simulation, downstream), passages_(simulation->model()) {
-  for (std::size_t hand = 0; hand < persons.size(); ++hand) {
-    if (persons[hand] != nullptr) {
-      workers_.push_back({persons[hand], hand, nullptr, 0});
+  for (std::size_t hand = 0; hand < movers.size(); ++hand) {
+    if (movers[hand] != nullptr) {
+      workers_.push_back({movers[hand], hand, nullptr, 0});
     }
   }
   if (workers_.empty()) {
@@ -80,10 +78,25 @@ const std::optional<SimulationEvent>& AssemblyRun::DropOf(OccurrenceId id) const
   return dropped_[leader.is_valid() ? leader.index() : id.index()];
 }
 
-std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& worker) const {
-  const SimulatedPerson* person = worker.person;
+std::string AssemblyRun::DescribeWhere(const SimulationEvent& dropped) {
+  const Vec3 p_mm = units::ToMm(1.0) * dropped.X_WB.p();
+  std::string text = fmt::format(" at {:.2f} {:.2f} {:.2f} mm", p_mm.x(), p_mm.y(), p_mm.z());
+  const PassageWatch::Touch touch = passages_.FindTouch(
+      physics(), dropped.occurrence, dropped.X_WB,
+      dropped.metrics.hardest.is_valid() ? OccurrenceId(dropped.metrics.hardest.index())
+                                         : OccurrenceId());
+  if (touch.other.is_valid() && touch.own_face != contact::kNoFace &&
+      touch.other_face != contact::kNoFace) {
+    text += fmt::format(", its face {} at face {} of {}", touch.own_face, touch.other_face,
+                        PathOf(touch.other));
+  }
+  return text;
+}
+
+std::string AssemblyRun::ExplainFailure(const sequence::SequenceStep& step, const Worker& worker) {
+  const TaskOperator* mover = worker.mover;
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
-  if (!dropped && person == nullptr) {
+  if (!dropped && mover == nullptr) {
     return "was not taken up";
   }
   if (const OccurrenceId missing = physics().FindMissingPartner(step); missing.is_valid()) {
@@ -96,32 +109,30 @@ std::string AssemblyRun::ExplainFailure(const SequenceStep& step, const Worker& 
   const std::string depth = metrics.insertion > 0 ? fmt::format(", {:.2f} mm into its hole at most",
                                                                 units::ToMm(metrics.insertion))
                                                   : std::string();
-  const std::string tries = person != nullptr
-                                ? fmt::format("gave up after {} searches", person->searches())
-                                : std::string("was let go elsewhere");
+  const std::string tries =
+      mover != nullptr ? mover->DescribeEffort() : std::string("was let go elsewhere");
   const char* crossed = metrics.is_thread_crossed ? ", with its thread crossed" : "";
-  return fmt::format("{}{}{}; {}", tries, depth, crossed, DescribeHardest(metrics));
+  return fmt::format("{}{}{}{}; {}", tries, mover != nullptr ? DescribeWhere(*dropped) : "", depth,
+                     crossed, DescribeHardest(metrics));
 }
 
-std::size_t AssemblyRun::IndexOf(const SequenceStep& step) const {
+std::size_t AssemblyRun::IndexOf(const sequence::SequenceStep& step) const {
   return static_cast<std::size_t>(&step - model().sequence.steps.data());
 }
 
-std::string AssemblyRun::FinishTurn(const SequenceStep& step, const Worker& worker,
+std::string AssemblyRun::FinishTurn(const sequence::SequenceStep& step, const Worker& worker,
                                     bool was_seated) {
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = true;
-  turn.is_seated = was_seated;
-  turn.neighbours_in_place = CountNeighboursInPlace(step);
   if (was_seated) {
-    const bool is_unit = !step.members.empty() && step.kind == SequenceStep::Kind::kInsert;
+    const bool is_unit =
+        !step.members.empty() && step.kind == sequence::SequenceStep::Kind::kInsert;
     const std::size_t leader = step.occurrence.index();
-    has_touched_[leader] = is_unit ? turn.neighbours_in_place > 0 : has_touched_[leader];
+    has_touched_[leader] = is_unit ? CountNeighboursInPlace(step) > 0 : has_touched_[leader];
     return {};
   }
   if (turn.tries <= 1) {
-    turn.reason = ExplainFailure(step, worker);
-    return turn.reason;
+    return ExplainFailure(step, worker);
   }
   return fmt::format("{}; tried {} times", turn.reason, turn.tries);
 }
@@ -153,7 +164,7 @@ std::string AssemblyRun::ExplainPassage(const PartResult& result) const {
 }
 
 std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
-  const SequenceStep* aside = FindAside(model().sequence, id);
+  const sequence::SequenceStep* aside = sequence::FindAside(model().sequence, id);
   if (aside == nullptr || physics().placement(id) != Placement::kPlaced) {
     return {};
   }
@@ -163,9 +174,16 @@ std::string AssemblyRun::DescribeAside(OccurrenceId id) const {
                             : fmt::format("goes in while {} is turned aside", moved);
 }
 
+std::string AssemblyRun::DescribePress(const PartResult& result) {
+  return result.needs_press()
+             ? fmt::format("needs a press: {:.3g} N, more than the {:.0f} N of a hand",
+                           result.fit_true, kMostHandForce)
+             : std::string();
+}
+
 std::string AssemblyRun::MakeNote(const PartResult& result) const {
   std::string note;
-  for (const std::string& item : {DescribeAllowances(result.allowances),
+  for (const std::string& item : {DescribePress(result), DescribeAllowances(result.allowances),
                                   DescribePresses(result.presses), DescribeAside(result.occurrence),
                                   ExplainUntouched(result.occurrence), ExplainPassage(result)}) {
     note += (note.empty() || item.empty() ? "" : "; ") + item;
@@ -173,7 +191,27 @@ std::string AssemblyRun::MakeNote(const PartResult& result) const {
   return note;
 }
 
-void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
+bool AssemblyRun::TryAgain(const sequence::SequenceStep& step, Worker* worker) {
+  Turn& turn = turns_[IndexOf(step)];
+  const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
+  const bool has_failed =
+      step.kind == sequence::SequenceStep::Kind::kInsert && dropped && !dropped->was_seated;
+  if (!has_failed || worker->mover == nullptr || turn.tries >= worker->mover->most_tries()) {
+    return false;
+  }
+  turn.reason = turn.tries == 1 ? ExplainFailure(step, *worker) : turn.reason;
+  AddHold(step.occurrence);
+  return Begin(step, worker);
+}
+
+void AssemblyRun::AssumeStep(const sequence::SequenceStep& step) {
+  for (const OccurrenceId id : sequence::UnitOf(step)) {
+    Assume(id);
+    Update(id);
+  }
+}
+
+void AssemblyRun::FinishStep(const sequence::SequenceStep& step, const Worker& worker) {
   const Model& model = this->model();
   PartResult& result = ResultOf(step.occurrence);
   const std::optional<SimulationEvent>& dropped = DropOf(step.occurrence);
@@ -181,7 +219,7 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
   AddHold(step.occurrence);
   const std::string reason = FinishTurn(step, worker, was_seated);
   result.reason = reason;
-  if (step.kind != SequenceStep::Kind::kAside) {
+  if (step.kind != sequence::SequenceStep::Kind::kAside) {
     result.allowances = was_seated ? ListPartAllowances(step) : std::vector<PartAllowance>();
     result.presses = was_seated ? ListPresses(step) : std::vector<PressedPair>();
   }
@@ -199,23 +237,30 @@ void AssemblyRun::FinishStep(const SequenceStep& step, const Worker& worker) {
     PartResult& other = ResultOf(member);
     other.reason = reason.empty() ? other.reason : "its subassembly " + reason;
   }
+  if (!was_seated && worker.mover != nullptr &&
+      step.kind == sequence::SequenceStep::Kind::kInsert) {
+    AssumeStep(step);
+  }
   Update(step.occurrence);
+  TellPart(step.occurrence, dropped ? dropped->t_ns : 0);
+}
+
+void AssemblyRun::TellPart(OccurrenceId id, std::int64_t t_ns) {
   if (on_part) {
     const auto seated = std::count_if(results_.begin(), results_.end(),
                                       [](const PartResult& part) { return part.is_seated; });
-    on_part({results_.size(), static_cast<std::size_t>(seated), CountParts(model),
-             dropped ? dropped->t_ns : 0},
-            ResultOf(step.occurrence));
+    on_part({results_.size(), static_cast<std::size_t>(seated), CountParts(model()), t_ns},
+            ResultOf(id));
   }
 }
 
 bool AssemblyRun::HasFinished(const Worker& worker) const {
-  if (worker.person != nullptr) {
-    return worker.person->finished_count() != worker.finished_before;
+  if (worker.mover != nullptr) {
+    return worker.mover->finished_count() != worker.finished_before;
   }
   // Real ones do as they like: a part may be in its place before its turn comes.
   const OccurrenceId id = worker.step->occurrence;
-  if (IsWithinProduct(worker.step->kind)) {
+  if (sequence::IsWithinProduct(worker.step->kind)) {
     return IsInVain(*worker.step);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[id.index()];
@@ -223,25 +268,25 @@ bool AssemblyRun::HasFinished(const Worker& worker) const {
          (IsSinglePart(*worker.step) && physics().placement(id) == Placement::kPlaced);
 }
 
-bool AssemblyRun::IsDoneByAnother(const SequenceStep& step, const Worker& worker) const {
+bool AssemblyRun::IsDoneByAnother(const sequence::SequenceStep& step, const Worker& worker) const {
   const std::optional<SimulationEvent>& dropped = dropped_[step.occurrence.index()];
-  return worker.person != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
+  return worker.mover != nullptr && IsSinglePart(step) && dropped && dropped->was_seated &&
          dropped->hand != worker.hand;
 }
 
-bool AssemblyRun::IsInPlaceAlready(const SequenceStep& step) const {
+bool AssemblyRun::IsInPlaceAlready(const sequence::SequenceStep& step) const {
   return IsSinglePart(step) && !dropped_[step.occurrence.index()] &&
          physics().placement(step.occurrence) == Placement::kPlaced;
 }
 
-bool AssemblyRun::IsInVain(const SequenceStep& step) const {
+bool AssemblyRun::IsInVain(const sequence::SequenceStep& step) const {
   // The order has the part that passes after each one that goes aside.
   return HasNothingToMove(step) ||
-         (step.kind == SequenceStep::Kind::kAside &&
+         (step.kind == sequence::SequenceStep::Kind::kAside &&
           physics().placement((&step + 1)->occurrence) == Placement::kPlaced);
 }
 
-spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
+spatial::Box AssemblyRun::WayIn(const sequence::SequenceStep& step) const {
   constexpr double kRoom = 5e-3;  // [m] to each side, for searching and for error
   const Body& body = model().bodies[step.occurrence.index()];
   const spatial::Box place = spatial::Transform(body.X_WB_goal, body.shape->box_B());
@@ -254,13 +299,13 @@ spatial::Box AssemblyRun::WayIn(const SequenceStep& step) const {
   return box.Expanded(kRoom);
 }
 
-bool AssemblyRun::CanGoOnBeside(const SequenceStep& step, const Worker& busy) const {
+bool AssemblyRun::CanGoOnBeside(const sequence::SequenceStep& step, const Worker& busy) const {
   const bool is_past_carrying = states_[busy.hand] >= haptics::HoldState::kCaptured;
   return is_past_carrying && IsSinglePart(step) && IsSinglePart(*busy.step) &&
          !WayIn(step).Overlaps(WayIn(*busy.step));
 }
 
-AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
+AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const sequence::SequenceStep& step) {
   Worker* free = nullptr;
   for (std::size_t i = 1; i <= workers_.size(); ++i) {
     Worker& worker = workers_[(last_worker_ + i) % workers_.size()];
@@ -273,48 +318,29 @@ AssemblyRun::Worker* AssemblyRun::FindWorkerFor(const SequenceStep& step) {
   return free;
 }
 
-SequenceStep AssemblyRun::PlanAgain(const SequenceStep& step) const {
-  contact::Scene scene;
-  const SequenceInput input = MakeSequenceInput(model(), &scene);
-  Extraction extraction(input, &model().sequence);
-  Unit moved{step.occurrence};
-  moved.insert(moved.end(), step.members.begin(), step.members.end());
-  for (const Body& body : model().bodies) {
-    scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
-    extraction.SetPresent({body.occurrence},
-                          physics().placement(body.occurrence) == Placement::kPlaced);
-  }
-  extraction.SetPresent(moved, true);
-  return extraction.TryRemove(moved).value_or(step);
-}
-
-bool AssemblyRun::Begin(const SequenceStep& step, Worker* worker) {
+bool AssemblyRun::Begin(const sequence::SequenceStep& step, Worker* worker) {
   // Of a subassembly only that moves which has got into it.
-  SequenceStep possible = step;
+  sequence::SequenceStep possible = step;
   std::erase_if(possible.members,
                 [this](OccurrenceId id) { return physics().placement(id) == Placement::kLoose; });
   if (IsSinglePart(step) && LeaderOf(step.occurrence).is_valid()) {
     possible = MakeTableStep(model(), physics().parts(), step.occurrence, TakeExtent::kWhole);
   }
-  const bool is_repeated = turns_[IndexOf(step)].is_finished;
-  if (worker->person != nullptr && is_repeated && step.kind == SequenceStep::Kind::kInsert) {
-    possible = PlanAgain(possible);
-  }
   for (std::size_t hand = 0; hand < hand_count(); ++hand) {
-    if (worker->person == nullptr || hand == worker->hand) {
+    if (worker->mover == nullptr || hand == worker->hand) {
       physics().Prepare(possible, hand);
     }
   }
-  if (worker->person != nullptr) {
+  if (worker->mover != nullptr) {
     dropped_[possible.occurrence.index()].reset();
-    worker->finished_before = worker->person->finished_count();
-    if (!worker->person->Assign(MakeTask(possible))) {
+    worker->finished_before = worker->mover->finished_count();
+    if (!worker->mover->Assign(MakeTask(possible))) {
       return false;
     }
   }
   Turn& turn = turns_[IndexOf(step)];
   turn.is_finished = false;
-  turn.tries += worker->person != nullptr ? 1 : 0;
+  turn.tries += worker->mover != nullptr ? 1 : 0;
   worker->step = &step;
   last_worker_ = static_cast<std::size_t>(worker - workers_.data());
   return true;
@@ -331,7 +357,7 @@ std::size_t AssemblyRun::next_step() const {
 }
 
 void AssemblyRun::FinishAll() {
-  for (const SequenceGap& gap : model().sequence.gaps) {
+  for (const sequence::SequenceGap& gap : model().sequence.gaps) {
     ResultOf(gap.occurrence).reason = gap.reason;
   }
   for (const Body& body : model().bodies) {
@@ -342,40 +368,7 @@ void AssemblyRun::FinishAll() {
   is_done_ = true;
 }
 
-bool AssemblyRun::HasFreePerson() const {
-  return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) {
-    return worker.person != nullptr && worker.step == nullptr;
-  });
-}
-
-const SequenceStep* AssemblyRun::FindStepToRepeat(bool is_at_end) const {
-  const auto& steps = model().sequence.steps;
-  const std::size_t end = std::min({next_step_, end_step_, steps.size()});
-  // What goes into a subassembly that is on its shelf has to wait until this is in its place.
-  std::size_t begin = first_step_;
-  for (std::size_t i = begin; i < end && !is_at_end; ++i) {
-    begin = steps[i].kind == SequenceStep::Kind::kPark ? i + 1 : begin;
-  }
-  for (std::size_t i = begin; i < end; ++i) {
-    const SequenceStep& step = steps[i];
-    const Turn& turn = turns_[i];
-    const bool is_insertion = step.kind == SequenceStep::Kind::kInsert;
-    const bool is_return = step.kind == SequenceStep::Kind::kReturn && !IsInVain(step);
-    if (!turn.is_finished || turn.is_seated || !(is_insertion || is_return) ||
-        turn.tries >= (is_at_end ? kMostTries : kMostTries - 1) ||
-        physics().placement(step.occurrence) == Placement::kPlaced ||
-        physics().FindMissingPartner(step).is_valid()) {
-      continue;
-    }
-    const bool is_held_better = CountNeighboursInPlace(step) > turn.neighbours_in_place;
-    if (is_held_better || (is_at_end && turn.tries < kMostTries - 1)) {
-      return &step;
-    }
-  }
-  return nullptr;
-}
-
-bool AssemblyRun::DoNext(const SequenceStep& step) {
+bool AssemblyRun::DoNext(const sequence::SequenceStep& step) {
   if (turns_[next_step_].is_finished || IsInPlaceAlready(step)) {
     return true;
   }
@@ -386,14 +379,20 @@ bool AssemblyRun::DoNext(const SequenceStep& step) {
   if (IsInVain(step)) {
     return true;
   }
-  if (step.kind == SequenceStep::Kind::kBase || next_step_ < first_step_) {
+  if (step.kind == sequence::SequenceStep::Kind::kAssume) {
+    ResultOf(step.occurrence).reason = sequence::FindGapReason(model().sequence, step.occurrence);
+    AssumeStep(step);
+    return true;
+  }
+  if (step.kind == sequence::SequenceStep::Kind::kBase || next_step_ < first_step_) {
     physics().PlaceInFixture(step.occurrence);
     has_touched_[step.occurrence.index()] = true;
     Update(step.occurrence);
     ResultOf(step.occurrence).note = MakeNote(ResultOf(step.occurrence));
     return true;
   }
-  const bool is_refused = worker->person != nullptr && step.kind == SequenceStep::Kind::kInsert &&
+  const bool is_refused = worker->mover != nullptr &&
+                          step.kind == sequence::SequenceStep::Kind::kInsert &&
                           physics().FindMissingPartner(step).is_valid();
   if (is_refused || IsDoneByAnother(step, *worker)) {
     FinishStep(step, *worker);
@@ -410,23 +409,13 @@ void AssemblyRun::Advance() {
     passages_.Look(physics(), hand);
   }
   for (Worker& worker : workers_) {
-    if (worker.step != nullptr && HasFinished(worker)) {
+    if (worker.step != nullptr && HasFinished(worker) && !TryAgain(*worker.step, &worker)) {
       FinishStep(*std::exchange(worker.step, nullptr), worker);
     }
   }
   const auto& steps = model().sequence.steps;
-  for (;;) {
-    const bool is_at_end = next_step_ >= std::min(end_step_, steps.size());
-    if (const SequenceStep* again = HasFreePerson() ? FindStepToRepeat(is_at_end) : nullptr) {
-      Worker* worker = FindWorkerFor(*again);
-      if (worker == nullptr || !Begin(*again, worker)) {
-        return;
-      }
-    } else if (is_at_end) {
-      break;
-    } else if (DoNext(steps[next_step_])) {
-      ++next_step_;
-    } else {
+  for (; next_step_ < std::min(end_step_, steps.size()); ++next_step_) {
+    if (!DoNext(steps[next_step_])) {
       return;
     }
   }

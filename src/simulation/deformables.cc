@@ -9,9 +9,9 @@
 
 #include "fits/pressed_parts.h"
 #include "mates/elastic_parts.h"
+#include "sequence/sequence.h"
 #include "simulation/deformation.h"
 #include "simulation/pressed_pairs.h"
-#include "simulation/sequence.h"
 
 namespace hvas::simulation {
 namespace {
@@ -170,7 +170,7 @@ DeformationForm MakePressForm(const Part& part, const ElasticPart& elastic,
   return form;
 }
 
-DeformationForm MakeArmForm(const BentArm& arm) {
+DeformationForm MakeArmForm(const sequence::BentArm& arm) {
   DeformationForm form;
   form.kind = arm.is_round ? DeformationKind::kFlare : DeformationKind::kBend;
   form.origin_B = arm.root_B;
@@ -198,11 +198,11 @@ DeformationForm MakeLipForm(const ElasticPart& seal) {
 
 class Lister {
  public:
-  Lister(const Product& product, const Sequence& sequence)
+  Lister(const Product& product, const sequence::Sequence& sequence)
       : product_(product), sequence_(sequence) {}
 
-  void AddGive(const GivingPair& give) {
-    const SequenceStep* step = FindInsertion(sequence_, give.moved);
+  void AddGive(const sequence::GivingPair& give) {
+    const sequence::SequenceStep* step = sequence::FindInsertion(sequence_, give.moved);
     if (give.curve == nullptr || step == nullptr) {
       return;
     }
@@ -222,7 +222,7 @@ class Lister {
       }
       AddRing({give.flexible, form, 0, 1, {}, {}}, source);
     } else {
-      for (const BentArm& arm : give.arms) {
+      for (const sequence::BentArm& arm : give.arms) {
         list_.push_back({give.flexible, MakeArmForm(arm), 0, 1, {source}, {}});
       }
     }
@@ -231,7 +231,7 @@ class Lister {
   void AddSqueezed(const PressedPair& pair) {
     const OccurrenceId id = pair.parts.front();
     const ElasticPart* elastic = FindElastic(product_, id);
-    const SequenceStep* step = FindInsertion(sequence_, pair.moved);
+    const sequence::SequenceStep* step = sequence::FindInsertion(sequence_, pair.moved);
     const double most = std::max(std::abs(pair.growth[0]), std::abs(pair.growth[1]));
     if (elastic == nullptr || step == nullptr || !(most > 0)) {
       return;
@@ -268,7 +268,7 @@ class Lister {
   }
 
   void AddPressed(const PressedPair& pair) {
-    const SequenceStep* step = FindInsertion(sequence_, pair.moved);
+    const sequence::SequenceStep* step = sequence::FindInsertion(sequence_, pair.moved);
     if (step == nullptr || pair.curve == nullptr) {
       return;
     }
@@ -308,7 +308,7 @@ class Lister {
   }
 
   /** @param own  DeformationSource::own. */
-  static DeformationSource SourceOf(const PressedPair& pair, const SequenceStep& step,
+  static DeformationSource SourceOf(const PressedPair& pair, const sequence::SequenceStep& step,
                                     std::vector<double> own) {
     return {pair.moved,       pair.against, step.extraction_W,
             pair.compression, pair.curve,   std::move(own)};
@@ -367,16 +367,16 @@ class Lister {
   }
 
   const Product& product_;
-  const Sequence& sequence_;
+  const sequence::Sequence& sequence_;
   std::vector<Deformable> list_;
 };
 
 }  // namespace
 
-std::vector<Deformable> ListDeformables(const Product& product, const Sequence& sequence,
+std::vector<Deformable> ListDeformables(const Product& product, const sequence::Sequence& sequence,
                                         const std::vector<PressedPair>& presses) {
   Lister lister(product, sequence);
-  for (const GivingPair& give : sequence.gives) {
+  for (const sequence::GivingPair& give : sequence.gives) {
     lister.AddGive(give);
   }
   for (const PressedPair& pair : presses) {

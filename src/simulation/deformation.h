@@ -115,7 +115,7 @@ struct Deformable {
 /** Lists the parts of a model that are drawn deformed: those of its giving pairs and of what is
  pressed, by its order of assembly. */
 [[nodiscard]] std::vector<Deformable> ListDeformables(const product::Product& product,
-                                                      const Sequence& sequence,
+                                                      const sequence::Sequence& sequence,
                                                       const std::vector<PressedPair>& presses);
 
 /** How far what a source deforms gives now, or is pressed together [m]; 0 where the part that moves

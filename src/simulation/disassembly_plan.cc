@@ -21,7 +21,7 @@ using PartSet = std::vector<OccurrenceId>;
 /** A straight way out of a part, and the parts that are in it. */
 struct WayOut {
   Vec3 direction{Vec3::Zero()};
-  std::vector<Obstacle> obstacles;
+  std::vector<sequence::Obstacle> obstacles;
   PartSet parts;          // Of the obstacles.
   bool is_closed{false};  // The base is in the way.
 };
@@ -54,7 +54,7 @@ class DisassemblyPlanner {
         options_(options),
         input_(MakeSequenceInput(model, &scene_)),
         extraction_(input_, &model.sequence),
-        base_(FindBase(model.sequence)) {
+        base_(sequence::FindBase(model.sequence)) {
     for (const Body& body : model.bodies) {
       if (body.role != BodyRole::kPart) {
         continue;  // Tools and fixtures are no parts of the product.
@@ -77,12 +77,12 @@ class DisassemblyPlanner {
 
   void PlanAll(DisassemblyPlan* plan);
   /** Takes parts out of `rest`, with nothing else there, until none can go. */
-  void TakeApart(Unit rest, DisassemblyPlan* plan);
+  void TakeApart(sequence::Unit rest, DisassemblyPlan* plan);
   /** Takes a subassembly that is put together first out as one body. */
-  [[nodiscard]] bool TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan);
+  [[nodiscard]] bool TakeOutSubassembly(sequence::Unit* rest, DisassemblyPlan* plan);
   /** Takes out a part that another one lets pass. */
-  [[nodiscard]] bool TakeOutPast(Unit* rest, DisassemblyPlan* plan);
-  void AddRemoval(SequenceStep step, DisassemblyPlan* plan);
+  [[nodiscard]] bool TakeOutPast(sequence::Unit* rest, DisassemblyPlan* plan);
+  void AddRemoval(sequence::SequenceStep step, DisassemblyPlan* plan);
   /** Reports the progress where so many parts have been looked at. */
   void Report(std::size_t parts) const;
   void PlanTarget(DisassemblyPlan* plan);
@@ -103,7 +103,7 @@ class DisassemblyPlanner {
   /** What keeps a part in on a way out; null: nothing does on any. */
   struct Wall {
     const WayOut* way{nullptr};
-    const Obstacle* obstacle{nullptr};
+    const sequence::Obstacle* obstacle{nullptr};
   };
 
   /** Finds what keeps a part in where it comes farthest, besides parts that are free. */
@@ -112,11 +112,11 @@ class DisassemblyPlanner {
   const Model& model_;
   const DisassemblyOptions& options_;
   contact::Scene scene_;
-  SequenceInput input_;
-  Extraction extraction_;
+  sequence::SequenceInput input_;
+  sequence::Extraction extraction_;
   OccurrenceId base_;
-  Unit in_place_;   // Parts that are in their place before anything comes out.
-  Unit elsewhere_;  // Parts that are not.
+  sequence::Unit in_place_;   // Parts that are in their place before anything comes out.
+  sequence::Unit elsewhere_;  // Parts that are not.
   std::map<OccurrenceId, std::vector<WayOut>> ways_;
 };
 
@@ -132,17 +132,17 @@ DisassemblyPlan DisassemblyPlanner::Plan() {
   return plan;
 }
 
-void DisassemblyPlanner::AddRemoval(SequenceStep step, DisassemblyPlan* plan) {
+void DisassemblyPlanner::AddRemoval(sequence::SequenceStep step, DisassemblyPlan* plan) {
   Removal removal;
-  if (IsWithinProduct(step.kind)) {
+  if (sequence::IsWithinProduct(step.kind)) {
     removal.way_length = step.engage_distance;
   } else {
-    step.kind = SequenceStep::Kind::kRemove;
+    step.kind = sequence::SequenceStep::Kind::kRemove;
     std::vector<bool> is_in_place;
     for (const Body& body : model_.bodies) {
       is_in_place.push_back(extraction_.is_present(body.occurrence));
     }
-    removal.way_length = extraction_.CalcWayLength(UnitOf(step), step.extraction_W);
+    removal.way_length = extraction_.CalcWayLength(sequence::UnitOf(step), step.extraction_W);
     removal.breakaway = CalcBreakaway(model_, step, is_in_place);
   }
   removal.step = std::move(step);
@@ -158,19 +158,19 @@ void DisassemblyPlanner::Report(std::size_t parts) const {
   }
 }
 
-bool DisassemblyPlanner::TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan) {
-  for (const SequenceStep& park : model_.sequence.steps) {
-    if (park.kind != SequenceStep::Kind::kPark) {
+bool DisassemblyPlanner::TakeOutSubassembly(sequence::Unit* rest, DisassemblyPlan* plan) {
+  for (const sequence::SequenceStep& park : model_.sequence.steps) {
+    if (park.kind != sequence::SequenceStep::Kind::kPark) {
       continue;
     }
-    const Unit unit = UnitOf(park);
+    const sequence::Unit unit = sequence::UnitOf(park);
     const bool is_there = std::all_of(unit.begin(), unit.end(), [rest](OccurrenceId id) {
       return std::find(rest->begin(), rest->end(), id) != rest->end();
     });
     if (!is_there || unit.size() >= rest->size()) {
       continue;
     }
-    std::optional<SequenceStep> step = extraction_.TryRemove(unit);
+    std::optional<sequence::SequenceStep> step = extraction_.TryRemove(unit);
     if (!step) {
       continue;
     }
@@ -183,15 +183,15 @@ bool DisassemblyPlanner::TakeOutSubassembly(Unit* rest, DisassemblyPlan* plan) {
   return false;
 }
 
-bool DisassemblyPlanner::TakeOutPast(Unit* rest, DisassemblyPlan* plan) {
-  std::vector<SequenceStep> steps = extraction_.TryRemovePast(rest, {});
-  for (SequenceStep& step : steps) {
+bool DisassemblyPlanner::TakeOutPast(sequence::Unit* rest, DisassemblyPlan* plan) {
+  std::vector<sequence::SequenceStep> steps = extraction_.TryRemovePast(rest, {});
+  for (sequence::SequenceStep& step : steps) {
     AddRemoval(std::move(step), plan);
   }
   return !steps.empty();
 }
 
-void DisassemblyPlanner::TakeApart(Unit rest, DisassemblyPlan* plan) {
+void DisassemblyPlanner::TakeApart(sequence::Unit rest, DisassemblyPlan* plan) {
   // Small parts first; the largest, the base, is the last and stays.
   std::stable_sort(rest.begin(), rest.end(), [this](OccurrenceId x, OccurrenceId y) {
     return std::pair(x == base_, extraction_.SizeOf(x)) <
@@ -199,7 +199,7 @@ void DisassemblyPlanner::TakeApart(Unit rest, DisassemblyPlan* plan) {
   });
   extraction_.Forget(rest);
   while (rest.size() > 1) {
-    if (std::optional<SequenceStep> step = extraction_.TryRemoveOne(&rest)) {
+    if (std::optional<sequence::SequenceStep> step = extraction_.TryRemoveOne(&rest)) {
       AddRemoval(std::move(*step), plan);
     } else if (!TakeOutSubassembly(&rest, plan) && !TakeOutPast(&rest, plan)) {
       break;
@@ -215,14 +215,14 @@ void DisassemblyPlanner::PlanAll(DisassemblyPlan* plan) {
   ShowAll();
   OccurrenceId aside;  // It is no obstacle to the part that it lets pass.
   for (Removal& removal : plan->removals) {
-    if (removal.step.kind == SequenceStep::Kind::kRemove) {
+    if (removal.step.kind == sequence::SequenceStep::Kind::kRemove) {
       removal.waits_for =
-          extraction_.ListObstacles(UnitOf(removal.step), removal.step.extraction_W, {});
-      std::erase_if(removal.waits_for, [aside](const Obstacle& obstacle) {
+          extraction_.ListObstacles(sequence::UnitOf(removal.step), removal.step.extraction_W, {});
+      std::erase_if(removal.waits_for, [aside](const sequence::Obstacle& obstacle) {
         return aside.is_valid() && obstacle.occurrence == aside;
       });
     }
-    const bool goes_aside = removal.step.kind == SequenceStep::Kind::kAside;
+    const bool goes_aside = removal.step.kind == sequence::SequenceStep::Kind::kAside;
     aside = goes_aside ? removal.step.occurrence : OccurrenceId();
   }
 }
@@ -237,7 +237,7 @@ const std::vector<WayOut>& DisassemblyPlanner::WaysOf(OccurrenceId id) {
     WayOut way;
     way.direction = direction;
     way.obstacles = extraction_.ListObstacles({id}, direction, base_);
-    for (const Obstacle& obstacle : way.obstacles) {
+    for (const sequence::Obstacle& obstacle : way.obstacles) {
       way.is_closed = way.is_closed || obstacle.occurrence == base_;
       way.parts.push_back(obstacle.occurrence);
     }
@@ -264,7 +264,7 @@ const std::vector<WayOut>& DisassemblyPlanner::WaysOf(OccurrenceId id) {
 
 std::vector<std::pair<OccurrenceId, const WayOut*>> DisassemblyPlanner::PutInOrder(
     const PartSet& set) {
-  Unit rest = set;
+  sequence::Unit rest = set;
   std::stable_sort(rest.begin(), rest.end(), [this](OccurrenceId x, OccurrenceId y) {
     return std::pair(x == options_.target, extraction_.SizeOf(x)) <
            std::pair(y == options_.target, extraction_.SizeOf(y));
@@ -333,7 +333,7 @@ PartSet DisassemblyPlanner::FindSetInOrder() {
   PlanAll(&all);
   PartSet set;
   for (const Removal& removal : all.removals) {
-    if (removal.step.kind != SequenceStep::Kind::kRemove) {
+    if (removal.step.kind != sequence::SequenceStep::Kind::kRemove) {
       return {};  // Only moves out of the product are looked at here.
     }
     set.push_back(removal.step.occurrence);
@@ -366,7 +366,7 @@ void DisassemblyPlanner::PlanTarget(DisassemblyPlan* plan) {
     return;
   }
   for (const auto& [id, way] : PutInOrder(set)) {
-    SequenceStep step;
+    sequence::SequenceStep step;
     step.occurrence = id;
     step.extraction_W = way->direction;
     step.engage_distance = extraction_.CalcEngageDistance({id}, way->direction);
@@ -401,7 +401,7 @@ DisassemblyPlanner::Wall DisassemblyPlanner::FindWall(OccurrenceId part, const P
     // Of each way the first part that stays; of all ways the one that leads farthest to it.
     const auto first = std::find_if(
         way.obstacles.begin(), way.obstacles.end(),
-        [&](const Obstacle& obstacle) { return !Contains(free, obstacle.occurrence); });
+        [&](const sequence::Obstacle& obstacle) { return !Contains(free, obstacle.occurrence); });
     if (first != way.obstacles.end() &&
         (wall.obstacle == nullptr || first->travelled > wall.obstacle->travelled)) {
       wall = {&way, &*first};
@@ -437,9 +437,9 @@ DisassemblyPlan PlanDisassembly(const Model& model, const DisassemblyOptions& op
   return DisassemblyPlanner(model, options).Plan();
 }
 
-double CalcBreakaway(const Model& model, const SequenceStep& step,
+double CalcBreakaway(const Model& model, const sequence::SequenceStep& step,
                      const std::vector<bool>& is_in_place) {
-  Unit unit = step.members;
+  sequence::Unit unit = step.members;
   unit.push_back(step.occurrence);
   double force = 0;
   for (const OccurrenceId id : unit) {

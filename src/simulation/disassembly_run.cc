@@ -20,16 +20,16 @@ void PutAllInPlace(Simulation* simulation) {
 }
 
 DisassemblyRun::DisassemblyRun(Simulation* simulation, const DisassemblyPlan* plan,
-                               SimulatedPerson* person, Sink* downstream)
-    : PartRun(simulation, downstream), plan_(*plan), person_(person) {
-  if (person_ == nullptr) {
+                               TaskOperator* mover, Sink* downstream)
+    : PartRun(simulation, downstream), plan_(*plan), mover_(mover) {
+  if (mover_ == nullptr) {
     simulation->physics().AllowTakingOut(0);
   }
 }
 
 bool DisassemblyRun::IsOut(const Removal& removal) const {
   const Placement placement = physics().placement(removal.step.occurrence);
-  if (IsWithinProduct(removal.step.kind)) {
+  if (sequence::IsWithinProduct(removal.step.kind)) {
     return placement == PlacementAfter(removal.step.kind);
   }
   const std::optional<SimulationEvent>& dropped = dropped_[removal.step.occurrence.index()];
@@ -37,7 +37,7 @@ bool DisassemblyRun::IsOut(const Removal& removal) const {
 }
 
 OccurrenceId DisassemblyRun::FindWall(const Removal& removal) const {
-  for (const Obstacle& obstacle : removal.waits_for) {
+  for (const sequence::Obstacle& obstacle : removal.waits_for) {
     if (physics().placement(obstacle.occurrence) == Placement::kPlaced) {
       return obstacle.occurrence;
     }
@@ -47,15 +47,15 @@ OccurrenceId DisassemblyRun::FindWall(const Removal& removal) const {
 
 bool DisassemblyRun::Begin(const Removal& removal) {
   physics().Prepare(removal.step);
-  if (person_ == nullptr) {
+  if (mover_ == nullptr) {
     return true;
   }
-  finished_before_ = person_->finished_count();
-  return person_->Assign(MakeTask(removal.step));
+  finished_before_ = mover_->finished_count();
+  return mover_->Assign(MakeTask(removal.step));
 }
 
 bool DisassemblyRun::HasFinished(const Removal& removal) const {
-  return person_ != nullptr ? person_->finished_count() != finished_before_ : IsOut(removal);
+  return mover_ != nullptr ? mover_->finished_count() != finished_before_ : IsOut(removal);
 }
 
 std::string DisassemblyRun::ExplainFailure(const Removal& removal) const {
@@ -92,7 +92,7 @@ void DisassemblyRun::Finish(const Removal& removal, const std::string& reason) {
 }
 
 void DisassemblyRun::FinishAll() {
-  for (const SequenceGap& stuck : plan_.stuck) {
+  for (const sequence::SequenceGap& stuck : plan_.stuck) {
     Update(stuck.occurrence);
     ResultOf(stuck.occurrence).reason = stuck.reason;
   }
@@ -116,7 +116,7 @@ void DisassemblyRun::Advance() {
       }
       is_busy_ = false;
       Finish(removal, IsOut(removal) ? std::string() : ExplainFailure(removal));
-    } else if (const OccurrenceId wall = FindWall(removal); wall.is_valid() && person_ != nullptr) {
+    } else if (const OccurrenceId wall = FindWall(removal); wall.is_valid() && mover_ != nullptr) {
       Finish(removal,
              fmt::format("{}, which has to come out first, is in its place", PathOf(wall)));
     } else {

@@ -18,9 +18,9 @@ class DisassemblyRun final : public PartRun {
  public:
   /** Makes the run; the loops do not run yet.
    @param plan  Plan for the model of the simulation; outlives this object.
-   @param person  Person who has the first hand; null: the user of a device, who takes out what
+   @param mover  What moves the first hand; null: the user of a device, who takes out what
    they like. */
-  DisassemblyRun(Simulation* simulation, const DisassemblyPlan* plan, SimulatedPerson* person,
+  DisassemblyRun(Simulation* simulation, const DisassemblyPlan* plan, TaskOperator* mover,
                  Sink* downstream);
 
   void Advance() override;
@@ -41,7 +41,7 @@ class DisassemblyRun final : public PartRun {
   void FinishAll();
 
   const DisassemblyPlan& plan_;
-  SimulatedPerson* person_;
+  TaskOperator* mover_;
   std::size_t next_{0};
   bool is_busy_{false};
   int finished_before_{0};

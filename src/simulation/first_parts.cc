@@ -6,8 +6,8 @@
 #include <set>
 
 #include "product/accessories.h"
-#include "simulation/base_choice.h"
-#include "simulation/neighbours.h"
+#include "sequence/base_choice.h"
+#include "sequence/neighbours.h"
 
 namespace hvas::simulation {
 namespace {
@@ -40,16 +40,16 @@ FirstParts ChooseFirstParts(const product::Product& product) {
     return {};
   }
   const auto smaller = [&product](OccurrenceId a, OccurrenceId b) {
-    return SizeOf(product.part_of(a)) < SizeOf(product.part_of(b));
+    return sequence::SizeOf(product.part_of(a)) < sequence::SizeOf(product.part_of(b));
   };
   std::vector<OccurrenceId> by_size;
   for (const product::Occurrence& occurrence : product.occurrences) {
     by_size.push_back(occurrence.id);
   }
   std::stable_sort(by_size.begin(), by_size.end(), smaller);
-  const Neighbours mated = FindMated(product, {});
+  const sequence::Neighbours mated = sequence::FindMated(product, {});
   FirstParts first;
-  first.base = ChooseBase(product, by_size, mated);
+  first.base = sequence::ChooseBase(product, by_size, mated);
   const PartId base_part = product.occurrences[first.base.index()].part;
   std::set<PartId> joined;
   for (const OccurrenceId id : mated[first.base.index()]) {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sequence/fit_of_mate.h"
 #include "simulation/actual_faces.h"
-#include "simulation/fit_of_mate.h"
 #include "simulation/load_shedder.h"
 
 namespace hvas::simulation {
@@ -43,8 +43,9 @@ HapticSide::HapticSide(const Model& model, const std::vector<haptics::TickOption
     const contact::BodyId id = scene_.Add(body.shape, body.X_WB_start);
     scene_.SetOffsets(id, faces[id.index()]);
     for (Hand& hand : hands_) {
-      hand.tick.SetProperties(id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
-                                   SurfaceOf(model.product->part_of(body.occurrence).material)});
+      hand.tick.SetProperties(
+          id, {body.mass.mass, body.mass.p_BoBcm_B, body.mass.I_BBcm_B,
+               sequence::SurfaceOf(model.product->part_of(body.occurrence).material)});
       hand.tick.SetLoose(id, body.role == BodyRole::kPart || body.role == BodyRole::kTool);
     }
     scene_.SetEnabled(id, body.role != BodyRole::kPending);

@@ -14,9 +14,9 @@
 #include "mates/prismatic_fits.h"
 #include "mates/resolve.h"
 #include "mates/thread_joints.h"
+#include "sequence/fit_of_mate.h"
 #include "simulation/bolt_circle.h"
-#include "simulation/fit_of_mate.h"
-#include "simulation/tool_reach.h"
+#include "simulation/tool_mates.h"
 
 namespace hvas::simulation {
 namespace {
@@ -56,7 +56,7 @@ product::Mate TurnToStep(const product::Product& product, const product::Mate& m
 }
 
 /** All bodies that move in a step; empty for a part alone. */
-std::vector<contact::BodyId> ListTogetherBodies(const SequenceStep& step) {
+std::vector<contact::BodyId> ListTogetherBodies(const sequence::SequenceStep& step) {
   std::vector<contact::BodyId> bodies;
   if (!step.members.empty()) {
     bodies.emplace_back(step.occurrence.index());
@@ -117,7 +117,7 @@ std::shared_ptr<const haptics::MateFaces> WithoutNeighbours(const haptics::MateF
 }
 
 /** Whether a step moves a part: as its own, or with it. */
-bool IsMovedBy(const SequenceStep& step, OccurrenceId id) {
+bool IsMovedBy(const sequence::SequenceStep& step, OccurrenceId id) {
   return id == step.occurrence ||
          std::find(step.members.begin(), step.members.end(), id) != step.members.end();
 }
@@ -129,7 +129,7 @@ bool IsStop(const product::Mate& mate, const Vec3& axis_W, const Vec3& insertion
   return mate.kind == MateKind::kFaceFace && std::abs(axis_W.dot(insertion_W)) > kStopCosine;
 }
 
-std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep& step,
+std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const sequence::SequenceStep& step,
                                                              bool can_join) {
   const OccurrenceId id = step.occurrence;
   const Body& body = model_.bodies[id.index()];
@@ -144,18 +144,19 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   held->mass = mass.mass;
   held->p_BoBcm_B = mass.p_BoBcm_B;
   held->I_BBcm_B = mass.I_BBcm_B;
-  held->surface = SurfaceOf(model_.product->part_of(id).material);
+  held->surface = sequence::SurfaceOf(model_.product->part_of(id).material);
   held->falls_when_dropped = (step.members.empty() || is_table_group) &&
-                             step.kind != SequenceStep::Kind::kPark && !IsWithinProduct(step.kind);
-  held->starts_in_place = step.kind == SequenceStep::Kind::kRemove && !is_on_table;
-  const bool lies_on_table =
-      is_on_table ? is_table_group
-                  : step.members.empty() && !held->starts_in_place && !IsWithinProduct(step.kind);
+                             step.kind != sequence::SequenceStep::Kind::kPark &&
+                             !sequence::IsWithinProduct(step.kind);
+  held->starts_in_place = step.kind == sequence::SequenceStep::Kind::kRemove && !is_on_table;
+  const bool lies_on_table = is_on_table ? is_table_group
+                                         : step.members.empty() && !held->starts_in_place &&
+                                               !sequence::IsWithinProduct(step.kind);
   held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
   held->has_bent_way = !step.way.empty();
   held->left_out = ListTogetherBodies(step);
-  held->allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
+  held->allowances = sequence::ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
   AddGives(id, held.get());
   AddMembers(step, held.get());
   AddPresses(step, held.get());
@@ -163,8 +164,8 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
   for (const haptics::HeldMember& member : held->members) {
     held->bodies.push_back(member.body);
   }
-  if (step.kind == SequenceStep::Kind::kPark) {
-    held->X_WB_goal = GoalOf(step, body.X_WB_goal);
+  if (step.kind == sequence::SequenceStep::Kind::kPark) {
+    held->X_WB_goal = sequence::GoalOf(step, body.X_WB_goal);
     return held;
   }
   if (body.role == BodyRole::kTool) {
@@ -176,18 +177,19 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const SequenceStep&
     held->group = GroupOf(ListTogether(parts_, id));
   }
   AddMates(step, Placement::kPlaced, nullptr, held.get());
-  held->lacks_partners = step.kind != SequenceStep::Kind::kAside && held->mates.empty() &&
+  held->lacks_partners = step.kind != sequence::SequenceStep::Kind::kAside && held->mates.empty() &&
                          FindMissingPartner(step).is_valid();
-  held->X_WB_goal =
-      held->starts_in_place ? held->X_WB_start : CalcPlace(*held, GoalOf(step, body.X_WB_goal));
+  held->X_WB_goal = held->starts_in_place
+                        ? held->X_WB_start
+                        : CalcPlace(*held, sequence::GoalOf(step, body.X_WB_goal));
   AddThreads(held.get());
-  if (can_join && !IsWithinProduct(step.kind)) {
+  if (can_join && !sequence::IsWithinProduct(step.kind)) {
     AddTablePlaces(step, held.get());
   }
   return held;
 }
 
-void HeldPartMaker::AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held) {
+void HeldPartMaker::AddTablePlaces(const sequence::SequenceStep& step, haptics::HeldPart* held) {
   constexpr double kRoom =
       0.03;  // [m] from where the target stands still before it is met: a choice
   std::vector<OccurrenceId> taken{step.occurrence};
@@ -224,7 +226,7 @@ void HeldPartMaker::AddTablePlaces(const SequenceStep& step, haptics::HeldPart* 
   }
 }
 
-void HeldPartMaker::AddMates(const SequenceStep& step, Placement placement,
+void HeldPartMaker::AddMates(const sequence::SequenceStep& step, Placement placement,
                              const std::vector<OccurrenceId>* target,
                              haptics::HeldPart* held) const {
   for (std::size_t member = 0; member <= step.members.size(); ++member) {
@@ -264,7 +266,7 @@ spatial::Pose HeldPartMaker::CalcPlace(const haptics::HeldPart& held,
   return mates::ResolveToward(constraints, X_before, X_WB_wanted).X_WB;
 }
 
-void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held) const {
+void HeldPartMaker::AddDrives(const sequence::SequenceStep& step, haptics::HeldPart* held) const {
   const Body& tool = model_.bodies[step.occurrence.index()];
   if (tool.role != BodyRole::kTool) {
     return;
@@ -297,7 +299,7 @@ void HeldPartMaker::AddDrives(const SequenceStep& step, haptics::HeldPart* held)
 }
 
 void HeldPartMaker::AddGives(OccurrenceId id, haptics::HeldPart* held) const {
-  for (const GivingPair& give : model_.sequence.gives) {
+  for (const sequence::GivingPair& give : model_.sequence.gives) {
     const OccurrenceId partner = give.flexible == id ? give.other : give.flexible;
     if (give.moved == id && give.curve && parts_[partner.index()].placement == Placement::kPlaced) {
       held->gives.push_back({give.curve, std::max(give.width, give.depth)});
@@ -305,8 +307,9 @@ void HeldPartMaker::AddGives(OccurrenceId id, haptics::HeldPart* held) const {
   }
 }
 
-void HeldPartMaker::AddPresses(const SequenceStep& step, haptics::HeldPart* held) const {
-  if (step.kind != SequenceStep::Kind::kInsert && step.kind != SequenceStep::Kind::kRemove) {
+void HeldPartMaker::AddPresses(const sequence::SequenceStep& step, haptics::HeldPart* held) const {
+  if (step.kind != sequence::SequenceStep::Kind::kInsert &&
+      step.kind != sequence::SequenceStep::Kind::kRemove) {
     return;
   }
   const auto is_there = [&](OccurrenceId id) {
@@ -321,7 +324,7 @@ void HeldPartMaker::AddPresses(const SequenceStep& step, haptics::HeldPart* held
   }
 }
 
-void HeldPartMaker::AddMembers(const SequenceStep& step, haptics::HeldPart* held) const {
+void HeldPartMaker::AddMembers(const sequence::SequenceStep& step, haptics::HeldPart* held) const {
   const spatial::Pose X_BW = model_.bodies[step.occurrence.index()].X_WB_goal.Inverse();
   for (const OccurrenceId id : step.members) {
     haptics::HeldMember member;
@@ -330,13 +333,14 @@ void HeldPartMaker::AddMembers(const SequenceStep& step, haptics::HeldPart* held
     member.shape = model_.bodies[id.index()].shape;
     member.X_BS = X_BW * model_.bodies[id.index()].X_WB_goal;
     member.left_out = ListTogetherBodies(step);
-    member.allowances = ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
+    member.allowances =
+        sequence::ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
     held->members.push_back(std::move(member));
   }
 }
 
-void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
-                               const std::vector<OccurrenceId>* target,
+void HeldPartMaker::AddMatesOf(const sequence::SequenceStep& step, std::size_t member,
+                               Placement placement, const std::vector<OccurrenceId>* target,
                                haptics::HeldPart* held) const {
   const OccurrenceId id = member == 0 ? step.occurrence : step.members[member - 1];
   for (const product::MateId mate_id : model_.mates_of[id.index()]) {
@@ -353,7 +357,7 @@ void HeldPartMaker::AddMatesOf(const SequenceStep& step, std::size_t member, Pla
   }
 }
 
-std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const SequenceStep& step,
+std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const sequence::SequenceStep& step,
                                                              std::size_t member,
                                                              const product::Mate& drawn,
                                                              const haptics::HeldPart& held) const {
@@ -368,8 +372,8 @@ std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const SequenceStep&
                  model_.bodies[other.index()].X_WB_goal.q() * X_WO.q().conjugate());
   const mates::MateConstraint constraint = mates::MakeConstraint(mate, id, X_WO);
   const spatial::Pose& X_WB_drawn = model_.bodies[id.index()].X_WB_goal;
-  if (step.kind == SequenceStep::Kind::kAside &&
-      !HoldsAside(constraint, X_WB_drawn, GoalOf(step, X_WB_drawn))) {
+  if (step.kind == sequence::SequenceStep::Kind::kAside &&
+      !HoldsAside(constraint, X_WB_drawn, sequence::GoalOf(step, X_WB_drawn))) {
     return std::nullopt;
   }
   haptics::HeldMate entry;
@@ -390,7 +394,7 @@ std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const SequenceStep&
   }
   entry.fit = compiled.fit;
   if (mate.fit && product::IsIsoFit(mate.fit->kind)) {
-    entry.fit_kind = ToFitsKind(mate.fit->kind);
+    entry.fit_kind = sequence::ToFitsKind(mate.fit->kind);
   }
   entry.body = contact::BodyId(other.index());
   entry.held_faces = is_a ? compiled.faces_a : compiled.faces_b;
@@ -403,7 +407,7 @@ std::optional<haptics::HeldMate> HeldPartMaker::MakeHeldMate(const SequenceStep&
   return entry;
 }
 
-spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const {
+spatial::Pose HeldPartMaker::CalcPoseAboveTable(const sequence::SequenceStep& step) const {
   // Free bodies are hulls with few corners; the exact shape may reach a little below the table.
   constexpr double kGap = 10e-6;  // [m]
   const spatial::Pose& X_WB = parts_[step.occurrence.index()].X_WB;
@@ -422,25 +426,29 @@ spatial::Pose HeldPartMaker::CalcPoseAboveTable(const SequenceStep& step) const 
 
 bool HeldPartMaker::IsMeantBefore(OccurrenceId id, OccurrenceId later) const {
   const auto& gaps = model_.sequence.gaps;
-  const bool is_given_up = std::any_of(
-      gaps.begin(), gaps.end(), [id](const SequenceGap& gap) { return gap.occurrence == id; });
-  if (is_given_up) {
+  const auto& steps = model_.sequence.steps;
+  const bool has_step =
+      std::any_of(steps.begin(), steps.end(),
+                  [id](const sequence::SequenceStep& step) { return step.occurrence == id; });
+  if (!has_step && std::any_of(gaps.begin(), gaps.end(), [id](const sequence::SequenceGap& gap) {
+        return gap.occurrence == id;
+      })) {
     return true;
   }
-  for (const SequenceStep& step : model_.sequence.steps) {
-    if (step.occurrence == later && step.kind == SequenceStep::Kind::kInsert) {
+  for (const sequence::SequenceStep& step : steps) {
+    if (step.occurrence == later && step.kind == sequence::SequenceStep::Kind::kInsert) {
       return false;
     }
-    if (step.occurrence == id && step.kind != SequenceStep::Kind::kPark) {
+    if (step.occurrence == id && step.kind != sequence::SequenceStep::Kind::kPark) {
       return true;
     }
   }
   return false;
 }
 
-OccurrenceId HeldPartMaker::FindMissingPartner(const SequenceStep& step) const {
+OccurrenceId HeldPartMaker::FindMissingPartner(const sequence::SequenceStep& step) const {
   OccurrenceId missing;
-  const SequenceStep* aside = FindAside(model_.sequence, step.occurrence);
+  const sequence::SequenceStep* aside = sequence::FindAside(model_.sequence, step.occurrence);
   const auto is_held_by = [&](OccurrenceId other) {
     if (aside != nullptr && aside->occurrence == other) {
       return true;  // It comes back.

@@ -26,7 +26,7 @@ class HeldPartMaker {
       : model_(model), parts_(parts), groups_(model) {}
 
   /** @param can_join  The part may be put to loose parts on the table. */
-  [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Make(const SequenceStep& step,
+  [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Make(const sequence::SequenceStep& step,
                                                               bool can_join);
 
   /** Loose parts that are together, as one body. */
@@ -38,25 +38,25 @@ class HeldPartMaker {
   /** A part that would hold what moves in a step, by a mate or because they touch as drawn, and
    that comes before it in the order, but is not in its place; invalid where there is none, or where
    any part that would hold it is in its place. */
-  [[nodiscard]] product::OccurrenceId FindMissingPartner(const SequenceStep& step) const;
+  [[nodiscard]] product::OccurrenceId FindMissingPartner(const sequence::SequenceStep& step) const;
 
  private:
   /** Adds the fasteners in their place that a tool fits. */
-  void AddDrives(const SequenceStep& step, haptics::HeldPart* held) const;
+  void AddDrives(const sequence::SequenceStep& step, haptics::HeldPart* held) const;
   /** Adds what gives on its way against parts in their places. */
   void AddGives(product::OccurrenceId id, haptics::HeldPart* held) const;
   /** Adds what the part presses together in its place. @pre Its members are known. */
-  void AddPresses(const SequenceStep& step, haptics::HeldPart* held) const;
-  void AddMembers(const SequenceStep& step, haptics::HeldPart* held) const;
+  void AddPresses(const sequence::SequenceStep& step, haptics::HeldPart* held) const;
+  void AddMembers(const sequence::SequenceStep& step, haptics::HeldPart* held) const;
   /** Adds mates with parts of this placement.
    @param target  Null: any of them; else these alone. */
-  void AddMates(const SequenceStep& step, Placement placement,
+  void AddMates(const sequence::SequenceStep& step, Placement placement,
                 const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
-  void AddMatesOf(const SequenceStep& step, std::size_t member, Placement placement,
+  void AddMatesOf(const sequence::SequenceStep& step, std::size_t member, Placement placement,
                   const std::vector<product::OccurrenceId>* target, haptics::HeldPart* held) const;
   /** Makes the entry of a mate with a part in its place; none where a part that is moved aside does
    not keep to the mate. */
-  [[nodiscard]] std::optional<haptics::HeldMate> MakeHeldMate(const SequenceStep& step,
+  [[nodiscard]] std::optional<haptics::HeldMate> MakeHeldMate(const sequence::SequenceStep& step,
                                                               std::size_t member,
                                                               const product::Mate& drawn,
                                                               const haptics::HeldPart& held) const;
@@ -64,11 +64,11 @@ class HeldPartMaker {
   [[nodiscard]] bool IsMeantBefore(product::OccurrenceId id, product::OccurrenceId later) const;
   /** Threads of the mates that were added. */
   void AddThreads(haptics::HeldPart* held) const;
-  void AddTablePlaces(const SequenceStep& step, haptics::HeldPart* held);
+  void AddTablePlaces(const sequence::SequenceStep& step, haptics::HeldPart* held);
   /** The place that the mates have, near a wanted one. */
   [[nodiscard]] static spatial::Pose CalcPlace(const haptics::HeldPart& held,
                                                const spatial::Pose& X_WB_wanted);
-  [[nodiscard]] spatial::Pose CalcPoseAboveTable(const SequenceStep& step) const;
+  [[nodiscard]] spatial::Pose CalcPoseAboveTable(const sequence::SequenceStep& step) const;
 
   const Model& model_;
   const std::vector<PartState>& parts_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "product/product.h"
-#include "simulation/sequence.h"
+#include "sequence/sequence.h"
 
 namespace hvas::simulation {
 
@@ -15,7 +15,7 @@ inline constexpr double kLeastPressed = 1e-6;
 
 /** The parts that are there while a straight step brings its part in, and those that move. */
 struct InsertStep {
-  const SequenceStep* step{nullptr};
+  const sequence::SequenceStep* step{nullptr};
   std::vector<product::OccurrenceId> unit;  ///< The parts that move as one.
   const std::vector<bool>* placed{
       nullptr};  ///< Whether a part, by occurrence, is in its place before the step.
@@ -29,12 +29,13 @@ struct InsertStep {
 
 /** Goes through an order of assembly, and looks at each step that brings a part in straight. */
 template <typename Look>
-void WalkInserts(const product::Product& product, const Sequence& sequence, const Look& look) {
+void WalkInserts(const product::Product& product, const sequence::Sequence& sequence,
+                 const Look& look) {
   std::vector<bool> placed(product.occurrences.size(), false);
-  for (const SequenceStep& step : sequence.steps) {
+  for (const sequence::SequenceStep& step : sequence.steps) {
     InsertStep insert{&step, step.members, &placed};
     insert.unit.push_back(step.occurrence);
-    if (step.kind == SequenceStep::Kind::kInsert && step.way.empty()) {
+    if (step.kind == sequence::SequenceStep::Kind::kInsert && step.way.empty()) {
       look(insert);
     }
     for (const product::OccurrenceId id : insert.unit) {

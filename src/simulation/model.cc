@@ -19,15 +19,16 @@
 #include "mates/place_bodies.h"
 #include "mates/prismatic_fits.h"
 #include "product/accessories.h"
+#include "sequence/extraction.h"
+#include "sequence/fit_of_mate.h"
+#include "sequence/mate_faces.h"
+#include "sequence/mate_way.h"
+#include "sequence/thread_faces.h"
 #include "simulation/actual_faces.h"
-#include "simulation/extraction.h"
 #include "simulation/first_parts.h"
-#include "simulation/fit_of_mate.h"
-#include "simulation/mate_way.h"
 #include "simulation/model_limits.h"
 #include "simulation/shapes.h"
 #include "simulation/table_layout.h"
-#include "simulation/thread_faces.h"
 
 namespace hvas::simulation {
 namespace {
@@ -57,12 +58,13 @@ void MakeFits(Model* model, Diagnostics* diagnostics) {
         model->bodies[mate.b.occurrence.index()].role == BodyRole::kPending) {
       continue;
     }
-    const Vec3 way_W = FindWayOut(model->sequence, mate);
-    compiled.fit = MakeFitForce(*model->product,
-                                mate.kind == product::MateKind::kPrismatic && way_W.norm() > 0
-                                    ? mates::TurnToWay(*model->product, mate, way_W)
-                                    : mate,
-                                model->seed, model->pairs, diagnostics);
+    const Vec3 way_W = sequence::FindWayOut(model->sequence, mate);
+    compiled.fit =
+        sequence::MakeFitForce(*model->product,
+                               mate.kind == product::MateKind::kPrismatic && way_W.norm() > 0
+                                   ? mates::TurnToWay(*model->product, mate, way_W)
+                                   : mate,
+                               model->seed, model->pairs, diagnostics);
   }
 }
 
@@ -79,9 +81,9 @@ void RelieveWays(const std::stop_token& stop, Model* model, Diagnostics* diagnos
   constexpr int kRounds = 3;  // What gives way at one place may meet the next: a choice.
   for (int round = 0; round < kRounds; ++round) {
     contact::Scene scene;
-    SequenceInput input = MakeSequenceInput(*model, &scene);
+    sequence::SequenceInput input = MakeSequenceInput(*model, &scene);
     input.stop = stop;
-    Extraction extraction(input, &model->sequence);
+    sequence::Extraction extraction(input, &model->sequence);
     for (const Body& body : model->bodies) {
       scene.SetOffsets(contact::BodyId(body.occurrence.index()), body.faces);
     }
@@ -128,19 +130,25 @@ void GiveRoles(Model* model) {
   }
 }
 
-/** Has the parts without a step among the gaps, and no others: with another base, or another order,
- they are not those that were found. */
+/** Has the parts that no step brings in among the gaps, and no others: with another base, or
+ another order, they are not those that were found. */
 void MatchGaps(Model* model) {
   std::vector<bool> is_in_step(model->bodies.size(), false);
-  for (const SequenceStep& step : model->sequence.steps) {
-    for (const OccurrenceId part : UnitOf(step)) {
+  for (const sequence::SequenceStep& step : model->sequence.steps) {
+    for (const OccurrenceId part : sequence::UnitOf(step)) {
       is_in_step[part.index()] = true;
     }
   }
-  std::vector<SequenceGap>& gaps = model->sequence.gaps;
-  std::erase_if(gaps, [&](const SequenceGap& gap) { return is_in_step[gap.occurrence.index()]; });
+  for (const sequence::SequenceStep& step : model->sequence.steps) {
+    if (step.kind == sequence::SequenceStep::Kind::kAssume) {
+      is_in_step[step.occurrence.index()] = false;
+    }
+  }
+  std::vector<sequence::SequenceGap>& gaps = model->sequence.gaps;
+  std::erase_if(
+      gaps, [&](const sequence::SequenceGap& gap) { return is_in_step[gap.occurrence.index()]; });
   std::vector<bool> is_gap(model->bodies.size(), false);
-  for (const SequenceGap& gap : gaps) {
+  for (const sequence::SequenceGap& gap : gaps) {
     is_gap[gap.occurrence.index()] = true;
   }
   for (const Body& body : model->bodies) {
@@ -160,7 +168,7 @@ Result<void> PutInOrder(const CompileOptions& options, Model* model) {
   if (options.first_parts.empty()) {
     return {};
   }
-  auto sequence = Reorder(*model->product, model->sequence, options.first_parts);
+  auto sequence = sequence::Reorder(*model->product, model->sequence, options.first_parts);
   if (!sequence) {
     return Unexpected(sequence.error());
   }
@@ -170,8 +178,8 @@ Result<void> PutInOrder(const CompileOptions& options, Model* model) {
 
 }  // namespace
 
-SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
-  SequenceInput input;
+sequence::SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
+  sequence::SequenceInput input;
   input.product = model.product.get();
   input.scene = scene;
   input.absent = model.accessories.tools;
@@ -197,7 +205,7 @@ SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene) {
   return input;
 }
 
-dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step) {
+dynamics::MassProperties CombineMass(const Model& model, const sequence::SequenceStep& step) {
   const Body& leader = model.bodies[step.occurrence.index()];
   dynamics::MassProperties sum = leader.mass;
   for (const OccurrenceId id : step.members) {
@@ -219,76 +227,8 @@ dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& ste
 
 namespace {
 
-/** Whether a face has a vertex on a plane of its part. */
-bool ReachesPlane(const product::Part& part, const product::Face& face,
-                  const spatial::Surface& plane) {
-  constexpr double kAtPlane = 10e-6;  // [m]; drawings that were converted are off by some um.
-  const auto is_at_plane = [&](std::uint32_t v) {
-    return std::abs(plane.axis.dot(part.mesh.vertices[v] - plane.origin)) < kAtPlane;
-  };
-  for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
-    const std::array<std::uint32_t, 3>& triangle = part.mesh.triangles[face.first_triangle + t];
-    if (std::any_of(triangle.begin(), triangle.end(), is_at_plane)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
-haptics::MateFaces CollectMateFaces(const product::Part& part,
-                                    const std::vector<product::FaceId>& mating) {
-  // Faces share an edge where two of their vertices coincide; meshes of neighbouring CAD faces meet
-  // in the same points.
-  using Key = std::array<std::int64_t, 3>;
-  const double grid = std::max(1e-9, 1e-7 * part.box_B.size().norm());
-  const auto key = [grid](const Vec3& p) {
-    return Key{std::llround(p.x() / grid), std::llround(p.y() / grid), std::llround(p.z() / grid)};
-  };
-  const auto vertices_of = [&](std::size_t f) {
-    std::set<Key> keys;
-    const product::Face& face = part.faces[f];
-    for (std::uint32_t t = 0; t < face.triangle_count; ++t) {
-      for (const std::uint32_t v : part.mesh.triangles[face.first_triangle + t]) {
-        keys.insert(key(part.mesh.vertices[v]));
-      }
-    }
-    return keys;
-  };
-  haptics::MateFaces faces;
-  std::set<Key> own;
-  for (const product::FaceId id : mating) {
-    faces.mating.push_back(id.value());
-    own.merge(vertices_of(id.index()));
-  }
-  std::sort(faces.mating.begin(), faces.mating.end());
-  const auto reaches_plane = [&part, &mating](const product::Face& face) {
-    return std::any_of(mating.begin(), mating.end(), [&](product::FaceId id) {
-      const spatial::Surface& plane = part.faces[id.index()].surface;
-      return plane.kind == spatial::SurfaceKind::kPlane && ReachesPlane(part, face, plane);
-    });
-  };
-  faces.with_neighbours = faces.mating;
-  for (std::size_t f = 0; f < part.faces.size(); ++f) {
-    if (std::binary_search(faces.mating.begin(), faces.mating.end(), f)) {
-      continue;
-    }
-    int shared = 0;
-    for (const Key& vertex : vertices_of(f)) {
-      shared += own.count(vertex) > 0 ? 1 : 0;
-    }
-    if (shared >= 2 || reaches_plane(part.faces[f])) {
-      faces.with_neighbours.push_back(static_cast<std::uint32_t>(f));
-    }
-  }
-  std::sort(faces.with_neighbours.begin(), faces.with_neighbours.end());
-  return faces;
-}
-
-namespace {
-
-std::vector<PressedPair> ListAllPresses(const Product& product, const Sequence& sequence) {
+std::vector<PressedPair> ListAllPresses(const Product& product,
+                                        const sequence::Sequence& sequence) {
   std::vector<PressedPair> presses = ListPressedPairs(product, sequence);
   for (auto list : {ListSqueezedPairs(product, sequence), ListSpreadLips(product, sequence)}) {
     std::move(list.begin(), list.end(), std::back_inserter(presses));
@@ -355,7 +295,7 @@ class MateFaceSets {
     auto& entry = made_[{part, connector.feature, connector.opposite}];
     if (entry == nullptr) {
       entry = std::make_shared<haptics::MateFaces>(
-          CollectMateFaces(product_.parts[part.index()], FacesOf(product_, connector)));
+          sequence::CollectMateFaces(product_.parts[part.index()], FacesOf(product_, connector)));
     }
     return entry;
   }
@@ -376,16 +316,16 @@ ModelMate MakeMate(const Product& product, const product::Mate& mate, bool is_nu
   made.faces_a = faces->Make(mate.a);
   made.faces_b = faces->Make(mate.b);
   const std::vector<product::FaceId> locking =
-      is_nut ? ListLockingFaces(product, mate) : std::vector<product::FaceId>();
+      is_nut ? sequence::ListLockingFaces(product, mate) : std::vector<product::FaceId>();
   if (!locking.empty()) {
     std::vector<product::FaceId> all = FacesOf(product, mate.a);
     all.insert(all.end(), locking.begin(), locking.end());
     made.faces_a = std::make_shared<haptics::MateFaces>(
-        CollectMateFaces(product.part_of(mate.a.occurrence), all));
+        sequence::CollectMateFaces(product.part_of(mate.a.occurrence), all));
   }
-  if (IsDrawnThread(mate) || !locking.empty()) {
-    made.faces_a = WidenForThread(product, mate, mate.a, *made.faces_a);
-    made.faces_b = WidenForThread(product, mate, mate.b, *made.faces_b);
+  if (sequence::IsDrawnThread(mate) || !locking.empty()) {
+    made.faces_a = sequence::WidenForThread(product, mate, mate.a, *made.faces_a);
+    made.faces_b = sequence::WidenForThread(product, mate, mate.b, *made.faces_b);
   }
   return made;
 }
@@ -432,8 +372,9 @@ Result<OccurrenceId> FindNamedBase(const CompileOptions& options, const Model& m
 
 Result<void> FindOrder(const CompileOptions& options, Model* model) {
   contact::Scene scene;
-  SequenceInput input = MakeSequenceInput(*model, &scene);
+  sequence::SequenceInput input = MakeSequenceInput(*model, &scene);
   input.way_looks = options.way_looks;
+  input.queries = options.search_queries;
   const auto base = FindNamedBase(options, *model);
   if (!base) {
     return Unexpected(base.error());
@@ -443,7 +384,7 @@ Result<void> FindOrder(const CompileOptions& options, Model* model) {
     ReportStage(options, "order of assembly", fraction);
   };
   input.stop = options.shape.stop;
-  model->sequence = PlanSequence(input);
+  model->sequence = sequence::PlanSequence(input);
   return CheckNotStopped(options, *model->product);
 }
 
@@ -560,7 +501,7 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
   auto model = MakeOrderedModel(std::move(product), shapes, options);
   if (model && !(*model)->sequence.screws.empty()) {
     // What was found to be a screw is one from now on, and the order is made with it.
-    if (auto with_screws = AddScrewMates(*(*model)->product, (*model)->sequence.screws)) {
+    if (auto with_screws = sequence::AddScrewMates(*(*model)->product, (*model)->sequence.screws)) {
       model = MakeOrderedModel(std::move(with_screws), shapes, options);
     }
   }
@@ -583,7 +524,8 @@ std::shared_ptr<const Model> DrawSizes(const Model& model, std::uint64_t seed,
   return drawn;
 }
 
-std::shared_ptr<const Model> ChangeOrder(const Model& model, std::vector<SequenceStep> steps,
+std::shared_ptr<const Model> ChangeOrder(const Model& model,
+                                         std::vector<sequence::SequenceStep> steps,
                                          const std::stop_token& stop, Diagnostics* diagnostics) {
   auto changed = std::make_shared<Model>(model);
   changed->sequence.steps = std::move(steps);

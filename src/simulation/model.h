@@ -20,9 +20,9 @@
 #include "mates/thread_joints.h"
 #include "product/drive_forms.h"
 #include "product/product.h"
+#include "sequence/sequence.h"
 #include "simulation/deformation.h"
 #include "simulation/pressed_pairs.h"
-#include "simulation/sequence.h"
 
 namespace hvas::simulation {
 
@@ -77,11 +77,14 @@ struct CompileOptions {
   std::string base;  ///< Name, path or id of the part that stays in the fixture; empty: found.
   /** The whole order of assembly, as a record keeps it, in place of the one that is found; empty:
    that one. */
-  std::vector<SequenceStep> steps;
+  std::vector<sequence::SequenceStep> steps;
   contact::ShapeOptions shape;                       ///< Its `stop` ends all of the preparation.
   std::shared_ptr<contact::ShapeCache> shape_cache;  ///< Null: shapes are always built.
   unsigned threads{0};                               ///< That build shapes; 0: one a core.
-  std::uint64_t way_looks{kWayLooks};  ///< Limits the search for ways that turn, for each part.
+  std::uint64_t way_looks{
+      sequence::kWayLooks};  ///< Limits the search for ways that turn, for each part.
+  /** Limits the search for the order, in all of the product. */
+  std::uint64_t search_queries{sequence::kSearchQueries};
   std::function<void(const std::string& stage, double fraction)> progress;
   /** Called by the calling thread with a model of the parts that are ready, long before the others
    are; never where that is no gain. All others are pending in it. May be null. */
@@ -97,7 +100,7 @@ struct Model {
   std::vector<Body> bodies;                            ///< Indexed by OccurrenceId.
   std::vector<ModelMate> mates;                        ///< Indexed by MateId.
   std::vector<std::vector<product::MateId>> mates_of;  ///< Indexed by OccurrenceId.
-  Sequence sequence;
+  sequence::Sequence sequence;
   std::vector<PressedPair> presses;     ///< What parts press together on their way, in this order.
   std::vector<Deformable> deformables;  ///< Parts that are drawn deformed, in this order.
   Accessories accessories;
@@ -136,24 +139,19 @@ Result<std::shared_ptr<const Model>> Compile(std::shared_ptr<const product::Prod
 /** Makes the same model with another order of assembly, whose ways are made free as Compile makes
  them. @param steps  All steps, as Sequence has them. */
 [[nodiscard]] std::shared_ptr<const Model> ChangeOrder(const Model& model,
-                                                       std::vector<SequenceStep> steps,
+                                                       std::vector<sequence::SequenceStep> steps,
                                                        const std::stop_token& stop,
                                                        Diagnostics* diagnostics);
 
 /** What the planners of a model's order and of its disassembly need.
  @param scene  Gets all parts at their drawn poses; outlives the result. */
-[[nodiscard]] SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene);
+[[nodiscard]] sequence::SequenceInput MakeSequenceInput(const Model& model, contact::Scene* scene);
 
 /** Mass of what moves in a step, about the leading part's frame, with its members as drawn. */
-[[nodiscard]] dynamics::MassProperties CombineMass(const Model& model, const SequenceStep& step);
+[[nodiscard]] dynamics::MassProperties CombineMass(const Model& model,
+                                                   const sequence::SequenceStep& step);
 
 /** The world of dynamics in which a model's loose parts lie. */
 [[nodiscard]] dynamics::WorldOptions TableOptions(const Model& model);
-
-/** Faces of a mate's side and their neighbours: the faces that share an edge with them, and those
- that reach the plane of a plane one within 10 um, as the flanks of teeth that end in its corners.
- */
-[[nodiscard]] haptics::MateFaces CollectMateFaces(const product::Part& part,
-                                                  const std::vector<product::FaceId>& mating);
 
 }  // namespace hvas::simulation

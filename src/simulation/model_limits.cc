@@ -25,12 +25,13 @@ struct MateCount {
   std::size_t replacing{0};  ///< and how many these mates are.
 };
 
-bool IsHeld(const SequenceStep& step, OccurrenceId id) {
+bool IsHeld(const sequence::SequenceStep& step, OccurrenceId id) {
   return id == step.occurrence ||
          std::find(step.members.begin(), step.members.end(), id) != step.members.end();
 }
 
-void CountMates(const Model& model, const SequenceStep& step, OccurrenceId held, MateCount* count) {
+void CountMates(const Model& model, const sequence::SequenceStep& step, OccurrenceId held,
+                MateCount* count) {
   std::map<OccurrenceId, std::size_t> replacing;  // By the other part.
   for (const product::MateId id : model.mates_of[held.index()]) {
     const product::Mate& mate = model.product->mates[id.index()];
@@ -55,7 +56,7 @@ void CountMates(const Model& model, const SequenceStep& step, OccurrenceId held,
   }
 }
 
-MateCount CountMates(const Model& model, const SequenceStep& step) {
+MateCount CountMates(const Model& model, const sequence::SequenceStep& step) {
   MateCount count;
   CountMates(model, step, step.occurrence, &count);
   for (const OccurrenceId member : step.members) {
@@ -72,8 +73,8 @@ void ReportMates(const Model& model, Diagnostics* diagnostics) {
   };
   std::set<product::PartId> many_mates;
   std::set<product::PartId> many_pairs;
-  for (const SequenceStep& step : model.sequence.steps) {
-    if (step.kind == SequenceStep::Kind::kPark) {
+  for (const sequence::SequenceStep& step : model.sequence.steps) {
+    if (step.kind == sequence::SequenceStep::Kind::kPark) {
       continue;  // Nothing guides it to the shelf.
     }
     const MateCount count = CountMates(model, step);

@@ -12,8 +12,8 @@
 #include "mates/mate_kind.h"
 #include "product/bearable_strain.h"
 #include "product/flexible.h"
-#include "simulation/thread_way.h"
-#include "simulation/turning_way.h"
+#include "sequence/thread_way.h"
+#include "sequence/turning_way.h"
 
 namespace hvas::simulation {
 
@@ -32,6 +32,7 @@ std::pair<const T&, const T&> InOrder(bool is_in_order, const T& a, const T& b) 
 PartRun::PartRun(Simulation* simulation, Sink* downstream)
     : dropped_(simulation->model().bodies.size()),
       has_touched_(simulation->model().bodies.size(), false),
+      is_assumed_(simulation->model().bodies.size(), false),
       simulation_(simulation),
       downstream_(downstream) {
   for (const Body& body : simulation_->model().bodies) {
@@ -65,9 +66,10 @@ void PartRun::OnFlight(const std::vector<FlightTick>& ticks) {
 
 void PartRun::OnEvent(const SimulationEvent& event) {
   if (event.kind == SimulationEvent::Kind::kDropped) {
+    is_assumed_[event.occurrence.index()] = false;
     dropped_[event.occurrence.index()] = event;
     if (event.was_seated) {
-      SequenceStep alone;
+      sequence::SequenceStep alone;
       alone.occurrence = event.occurrence;
       has_touched_[event.occurrence.index()] = CountNeighboursInPlace(alone) > 0;
     }
@@ -79,7 +81,7 @@ void PartRun::OnEvent(const SimulationEvent& event) {
   }
 }
 
-bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
+bool PartRun::IsGuidedByPlanes(const sequence::SequenceStep& step) const {
   const Model& model = this->model();
   const auto has_axis = [&](OccurrenceId id) {
     const auto& mates = model.mates_of[id.index()];
@@ -93,7 +95,7 @@ bool PartRun::IsGuidedByPlanes(const SequenceStep& step) const {
          std::none_of(step.members.begin(), step.members.end(), has_axis);
 }
 
-bool PartRun::HasOnlyPlay(const SequenceStep& step) const {
+bool PartRun::HasOnlyPlay(const sequence::SequenceStep& step) const {
   const Model& model = this->model();
   bool has_any = false;
   for (const product::MateId mate_id : model.mates_of[step.occurrence.index()]) {
@@ -112,42 +114,42 @@ bool PartRun::HasOnlyPlay(const SequenceStep& step) const {
   return has_any;
 }
 
-bool PartRun::HasNothingToMove(const SequenceStep& step) const {
+bool PartRun::HasNothingToMove(const sequence::SequenceStep& step) const {
   const Placement placement = physics().placement(step.occurrence);
-  return IsWithinProduct(step.kind) && placement != Placement::kHeld &&
+  return sequence::IsWithinProduct(step.kind) && placement != Placement::kHeld &&
          placement != PlacementBefore(step.kind);
 }
 
-sweep::Path PartRun::WayOf(const SequenceStep& step) {
-  const bool is_in_product =
-      step.kind == SequenceStep::Kind::kInsert || step.kind == SequenceStep::Kind::kRemove;
+paths::Path PartRun::WayOf(const sequence::SequenceStep& step) {
+  const bool is_in_product = step.kind == sequence::SequenceStep::Kind::kInsert ||
+                             step.kind == sequence::SequenceStep::Kind::kRemove;
   if (!step.way.empty() || !is_in_product || !simulation_->options().guidance.threads_turn) {
     return step.way;
   }
-  return MakeThreadWay(*physics().Describe(step), step.engage_distance);
+  return sequence::MakeThreadWay(*physics().Describe(step), step.engage_distance);
 }
 
-PersonTask PartRun::MakeTask(const SequenceStep& step) {
+PersonTask PartRun::MakeTask(const sequence::SequenceStep& step) {
   const Model& model = this->model();
   const Body& body = model.bodies[step.occurrence.index()];
   const spatial::Pose X_BG(CombineMass(model, step).p_BoBcm_B);
   PersonTask task;
   task.occurrence = step.occurrence;
   task.p_BG = X_BG.p();
-  task.takes_out = step.kind == SequenceStep::Kind::kRemove;
+  task.takes_out = step.kind == sequence::SequenceStep::Kind::kRemove;
   if (task.takes_out) {
     task.X_WG_start = body.X_WB_start * X_BG;
     task.X_WG_goal = physics().pose(step.occurrence) * X_BG;
   } else {
     task.X_WG_start = physics().pose(step.occurrence) * X_BG;
-    task.X_WG_goal = GoalOf(step, body.X_WB_goal) * X_BG;
+    task.X_WG_goal = sequence::GoalOf(step, body.X_WB_goal) * X_BG;
   }
-  task.starts_on_way = IsWithinProduct(step.kind);
+  task.starts_on_way = sequence::IsWithinProduct(step.kind);
   task.extraction_W = step.extraction_W;
   task.engage_distance = step.engage_distance;
-  const sweep::Path way = WayOf(step);
+  const paths::Path way = WayOf(step);
   if (!way.empty()) {
-    ways_.push_back(MakeGripWay(way, X_BG.p(), body.shape->box_B()));
+    ways_.push_back(sequence::MakeGripWay(way, X_BG.p(), body.shape->box_B()));
     task.way = &ways_.back();
     task.is_threaded = step.way.empty();
     task.extraction_W = task.way->outward_W();
@@ -161,7 +163,7 @@ PersonTask PartRun::MakeTask(const SequenceStep& step) {
   return task;
 }
 
-std::optional<bool> PartRun::FindMoved(const SequenceStep& step, OccurrenceId a,
+std::optional<bool> PartRun::FindMoved(const sequence::SequenceStep& step, OccurrenceId a,
                                        OccurrenceId b) const {
   const auto is_moved = [&step](OccurrenceId id) {
     return id == step.occurrence ||
@@ -174,9 +176,9 @@ std::optional<bool> PartRun::FindMoved(const SequenceStep& step, OccurrenceId a,
   return is_a;
 }
 
-std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step) const {
+std::vector<PartAllowance> PartRun::ListPartAllowances(const sequence::SequenceStep& step) const {
   std::vector<PartAllowance> allowances;
-  for (const DrawnOverlap& overlap : model().sequence.overlaps) {
+  for (const sequence::DrawnOverlap& overlap : model().sequence.overlaps) {
     if (const auto is_a = FindMoved(step, overlap.a, overlap.b)) {
       PartAllowance allowance;
       allowance.kind = PartAllowance::Kind::kDrawn;
@@ -188,7 +190,7 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
       allowances.push_back(std::move(allowance));
     }
   }
-  for (const GivingPair& give : model().sequence.gives) {
+  for (const sequence::GivingPair& give : model().sequence.gives) {
     if (const auto is_own = FindMoved(step, give.flexible, give.other)) {
       PartAllowance allowance;
       allowance.kind = PartAllowance::Kind::kGive;
@@ -210,9 +212,9 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const SequenceStep& step)
 std::string PartRun::DescribeAllowance(const PartAllowance& allowance, bool is_beyond,
                                        const std::string& more) const {
   if (allowance.kind == PartAllowance::Kind::kDrawn) {
-    const std::string beyond =
-        is_beyond ? fmt::format(" of up to {:.1f} mm more than drawn", units::ToMm(kBeyondDrawn))
-                  : "";
+    const std::string beyond = is_beyond ? fmt::format(" of up to {:.1f} mm more than drawn",
+                                                       units::ToMm(sequence::kBeyondDrawn))
+                                         : "";
     return fmt::format("only by an allowance{}: it lies {:.3f} mm in {}{} as drawn", beyond,
                        units::ToMm(allowance.depth), PathOf(allowance.other), more);
   }
@@ -256,7 +258,7 @@ std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowa
   return text;
 }
 
-std::vector<PressedPair> PartRun::ListPresses(const SequenceStep& step) const {
+std::vector<PressedPair> PartRun::ListPresses(const sequence::SequenceStep& step) const {
   std::vector<PressedPair> presses;
   std::copy_if(model().presses.begin(), model().presses.end(), std::back_inserter(presses),
                [&step](const PressedPair& pair) { return pair.moved == step.occurrence; });
@@ -290,8 +292,8 @@ std::string PartRun::DescribePresses(const std::vector<PressedPair>& presses) co
                      units::ToMm(hardest->compression), hardest->force, hardest->source, more);
 }
 
-std::size_t PartRun::CountNeighboursInPlace(const SequenceStep& step) const {
-  const Neighbours& neighbours = model().sequence.neighbours;
+std::size_t PartRun::CountNeighboursInPlace(const sequence::SequenceStep& step) const {
+  const sequence::Neighbours& neighbours = model().sequence.neighbours;
   const auto is_own = [&step](OccurrenceId id) {
     return id == step.occurrence ||
            std::find(step.members.begin(), step.members.end(), id) != step.members.end();
@@ -342,9 +344,16 @@ void PartRun::AddHold(OccurrenceId id) {
   result.arrival_angle = metrics.arrival_angle;
 }
 
+void PartRun::Assume(OccurrenceId id) {
+  physics().PlaceInFixture(id);
+  is_assumed_[id.index()] = true;
+}
+
 void PartRun::Update(OccurrenceId id) {
   PartResult& result = ResultOf(id);
-  result.is_seated = physics().placement(id) == Placement::kPlaced;
+  const bool is_placed = physics().placement(id) == Placement::kPlaced;
+  result.is_assumed = is_placed && is_assumed_[id.index()];
+  result.is_seated = is_placed && !result.is_assumed;
   result.has_touched = result.is_seated && has_touched_[id.index()];
   const spatial::Pose& X_WB = physics().pose(id);
   const spatial::Pose& X_goal = model().bodies[id.index()].X_WB_goal;

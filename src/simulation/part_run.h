@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "simulation/arm.h"
 #include "simulation/executors.h"
 #include "simulation/passage_watch.h"
 #include "simulation/pressed_pairs.h"
-#include "simulation/simulated_person.h"
 #include "simulation/simulation.h"
+#include "simulation/task_operator.h"
 
 namespace hvas::simulation {
 
@@ -44,6 +45,9 @@ struct PartAllowance {
 struct PartResult {
   product::OccurrenceId occurrence;
   bool is_seated{false};
+  /** It could not be brought to its place, and was put where the drawing has it, so that the parts
+   after it could be tried. */
+  bool is_assumed{false};
   std::string reason;                     ///< Why not, when it is not seated.
   std::string note;                       ///< What was odd about it although it is; may be empty.
   std::vector<PartAllowance> allowances;  ///< It is in its place only by these.
@@ -72,6 +76,9 @@ struct PartResult {
    seated part stands where they say. */
   double pose_error{0};
   double pose_error_angle{0};  ///< [rad]
+
+  /** Its fits take more than kMostHandForce. */
+  [[nodiscard]] bool needs_press() const { return fit_true > kMostHandForce; }
 };
 
 /** How far an assembly has come. */
@@ -82,8 +89,8 @@ struct AssemblyProgress {
   std::int64_t t_ns{0};  ///< Session time.
 };
 
-/** The simulated persons, by hand; null where a real one has that hand, or there is none. */
-using Persons = std::array<SimulatedPerson*, haptics::kMaxHands>;
+/** What does the tasks, by hand; null where a real person has that hand, or there is none. */
+using TaskOperators = std::array<TaskOperator*, haptics::kMaxHands>;
 
 /** A run of a simulation in which parts have their turn one after the other, with the results of
  each: the base of AssemblyRun and DisassemblyRun. As a Sink the run stands between the loops and
@@ -134,17 +141,21 @@ class PartRun : public Sink {
   [[nodiscard]] PartResult& ResultOf(product::OccurrenceId id);
   /** Adds what the last hold of a part amounted to, if there was one, to its result. */
   void AddHold(product::OccurrenceId id);
+  /** Puts a part where the drawing has it although nothing has brought it there. */
+  void Assume(product::OccurrenceId id);
   /** Sets where a part is now in its result. */
   void Update(product::OccurrenceId id);
   [[nodiscard]] const std::string& PathOf(product::OccurrenceId id) const;
   /** Lists what moves in a step is allowed with the parts that are in their places. */
-  [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(const SequenceStep& step) const;
+  [[nodiscard]] std::vector<PartAllowance> ListPartAllowances(
+      const sequence::SequenceStep& step) const;
   /** Finds which of two parts a step moves while the other one is in its place: whether it is the
    first; none where it is not so. */
-  [[nodiscard]] std::optional<bool> FindMoved(const SequenceStep& step, product::OccurrenceId a,
+  [[nodiscard]] std::optional<bool> FindMoved(const sequence::SequenceStep& step,
+                                              product::OccurrenceId a,
                                               product::OccurrenceId b) const;
   /** Lists what moves in a step presses together in its place. */
-  [[nodiscard]] std::vector<PressedPair> ListPresses(const SequenceStep& step) const;
+  [[nodiscard]] std::vector<PressedPair> ListPresses(const sequence::SequenceStep& step) const;
   /** Describes what is pressed hardest, as in "presses spring together by 3.00 mm: 82.5 N (G d^4 /
    (8 D^3 n), Wahl)"; empty where it is nothing. */
   [[nodiscard]] std::string DescribePresses(const std::vector<PressedPair>& presses) const;
@@ -153,24 +164,25 @@ class PartRun : public Sink {
   [[nodiscard]] std::string DescribeAllowance(const PartAllowance& allowance, bool is_beyond,
                                               const std::string& more) const;
   /** Counts the parts in their place that hold what moves in a step, where it is to go. */
-  [[nodiscard]] std::size_t CountNeighboursInPlace(const SequenceStep& step) const;
+  [[nodiscard]] std::size_t CountNeighboursInPlace(const sequence::SequenceStep& step) const;
   /** Names the part that was pressed hardest in a hold, with the force. */
   [[nodiscard]] std::string DescribeHardest(const HoldMetrics& metrics) const;
   /** Whether no mate with a part in its place but planes guides what moves in a step. */
-  [[nodiscard]] bool IsGuidedByPlanes(const SequenceStep& step) const;
+  [[nodiscard]] bool IsGuidedByPlanes(const sequence::SequenceStep& step) const;
   /** Whether all fits of a part with parts in their places have play. */
-  [[nodiscard]] bool HasOnlyPlay(const SequenceStep& step) const;
+  [[nodiscard]] bool HasOnlyPlay(const sequence::SequenceStep& step) const;
   /** Whether a part that a step moves within the product is not where the step begins. */
-  [[nodiscard]] bool HasNothingToMove(const SequenceStep& step) const;
+  [[nodiscard]] bool HasNothingToMove(const sequence::SequenceStep& step) const;
   /** The way of what moves in a step; empty where it is straight. A thread's is a helix where
    threads turn. */
-  [[nodiscard]] sweep::Path WayOf(const SequenceStep& step);
+  [[nodiscard]] paths::Path WayOf(const sequence::SequenceStep& step);
   /** The task of a person who puts in or takes out what moves in a step. */
-  [[nodiscard]] PersonTask MakeTask(const SequenceStep& step);
+  [[nodiscard]] PersonTask MakeTask(const sequence::SequenceStep& step);
 
   std::array<haptics::HoldState, haptics::kMaxHands> states_{};  ///< One for each hand.
   std::vector<std::optional<SimulationEvent>> dropped_;  ///< Last of each part, by OccurrenceId.
   std::vector<bool> has_touched_;  ///< PartResult::has_touched, by OccurrenceId.
+  std::vector<bool> is_assumed_;   ///< PartResult::is_assumed, by OccurrenceId.
   std::vector<PartResult> results_;
   bool is_done_{false};
 
@@ -178,7 +190,7 @@ class PartRun : public Sink {
   Simulation* simulation_;
   Sink* downstream_;
   double lift_height_{0.05};
-  std::deque<GripWay> ways_;  // Of the tasks that were made.
+  std::deque<sequence::GripWay> ways_;  // Of the tasks that were made.
 };
 
 /** Where a person stands who has all parts on the table in front: the first pose of the hand. */

@@ -35,12 +35,12 @@ enum class Placement : std::uint8_t {
 
 /** What a part is before a step within the product moves it, and what after.
  @pre IsWithinProduct(kind) */
-[[nodiscard]] constexpr Placement PlacementBefore(SequenceStep::Kind kind) noexcept {
-  return kind == SequenceStep::Kind::kAside ? Placement::kPlaced : Placement::kParked;
+[[nodiscard]] constexpr Placement PlacementBefore(sequence::SequenceStep::Kind kind) noexcept {
+  return kind == sequence::SequenceStep::Kind::kAside ? Placement::kPlaced : Placement::kParked;
 }
 
-[[nodiscard]] constexpr Placement PlacementAfter(SequenceStep::Kind kind) noexcept {
-  return kind == SequenceStep::Kind::kAside ? Placement::kParked : Placement::kPlaced;
+[[nodiscard]] constexpr Placement PlacementAfter(sequence::SequenceStep::Kind kind) noexcept {
+  return kind == sequence::SequenceStep::Kind::kAside ? Placement::kParked : Placement::kPlaced;
 }
 
 /** Where a part is, and what it does there. */
@@ -68,7 +68,7 @@ struct GivenCommand {
   TickCommand::Kind kind{TickCommand::Kind::kPlace};
   std::size_t hand{0};           ///< The hand that takes, or helps.
   std::size_t other{0};          ///< The hand that is helped.
-  SequenceStep step;             ///< What is taken; of what is placed the occurrence alone.
+  sequence::SequenceStep step;   ///< What is taken; of what is placed the occurrence alone.
   bool can_join{false};          ///< What is taken may be put to loose parts on the table.
   std::vector<PartState> parts;  ///< Indexed by OccurrenceId.
 };

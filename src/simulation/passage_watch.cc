@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "simulation/thread_faces.h"
+#include "sequence/thread_faces.h"
 
 namespace hvas::simulation {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kLeastDepthOfSize = 3e-4;
 
 /** A thread whose flanks are drawn: it is screwed in, for which going straight along it stands. */
 bool IsModelledThread(const product::Product& product, const product::Mate& mate) {
-  if (!mate.fit || mate.fit->kind != product::FitKind::kThread || !IsDrawnThread(mate)) {
+  if (!mate.fit || mate.fit->kind != product::FitKind::kThread || !sequence::IsDrawnThread(mate)) {
     return false;
   }
   const auto is_modelled = [&product](const product::Connector& side) {
@@ -91,6 +91,28 @@ void PassageWatch::LookAt(OccurrenceId leader, OccurrenceId id, const spatial::P
       deepest = beyond > deepest.depth ? Passage{passage.through, beyond} : deepest;
     }
   }
+}
+
+PassageWatch::Touch PassageWatch::FindTouch(const PhysicsSide& physics, OccurrenceId id,
+                                            const spatial::Pose& X_WB, OccurrenceId with) {
+  constexpr double kNear =
+      0.1e-3;  // [m]; what pressed on it was let go and may have moved by that.
+  PlaceOthers(physics);
+  contact::QueryOptions query;
+  query.margin = kNear;
+  query.self = contact::BodyId(id.index());
+  scene_.Query(*model_.bodies[id.index()].shape, X_WB, query, &workspace_);
+  Touch touch;
+  double least = kNear;
+  for (const contact::Contact& contact : workspace_.contacts()) {
+    const bool is_meant =
+        contact.body.is_valid() && (!with.is_valid() || contact.body.index() == with.index());
+    if (is_meant && contact.distance < least) {
+      least = contact.distance;
+      touch = {OccurrenceId(contact.body.index()), contact.held_face, contact.scene_face};
+    }
+  }
+  return touch;
 }
 
 void PassageWatch::Query(OccurrenceId id, const spatial::Pose& X_WB) {

@@ -31,6 +31,18 @@ class PassageWatch {
     return passages_[id.index()];
   }
 
+  /** Two faces that touch, or nearly so. */
+  struct Touch {
+    product::OccurrenceId other;  ///< Invalid: none is near.
+    std::uint32_t own_face{contact::kNoFace};
+    std::uint32_t other_face{contact::kNoFace};
+  };
+
+  /** Finds where a part at a pose touches others in their places: the deepest contact with this
+   one, or with any where it is invalid. */
+  [[nodiscard]] Touch FindTouch(const PhysicsSide& physics, product::OccurrenceId id,
+                                const spatial::Pose& X_WB, product::OccurrenceId with);
+
  private:
   void PlaceOthers(const PhysicsSide& physics);
   /** @param leader  The part in the hand that `id` is, or moves with. */

@@ -167,15 +167,16 @@ void PhysicsSide::PublishFrame() {
 
 void PhysicsSide::HandleDrop(const SimulationEvent& event) {
   Hand& hand = hands_[event.hand];
-  const SequenceStep::Kind kind = hand.held_step.kind;
-  const bool is_shelf = kind == SequenceStep::Kind::kPark || kind == SequenceStep::Kind::kAside;
+  const sequence::SequenceStep::Kind kind = hand.held_step.kind;
+  const bool is_shelf =
+      kind == sequence::SequenceStep::Kind::kPark || kind == sequence::SequenceStep::Kind::kAside;
   const auto settle = [&](OccurrenceId id, const spatial::Pose& X_WB) {
     PartState& part = parts_[id.index()];
     part.X_WB = X_WB;
     const bool is_together = part.leader.is_valid() || event.onto.is_valid();
     // A subassembly does not fall apart.
-    const bool stays =
-        is_shelf || kind == SequenceStep::Kind::kReturn || !hand.held_step.members.empty();
+    const bool stays = is_shelf || kind == sequence::SequenceStep::Kind::kReturn ||
+                       !hand.held_step.members.empty();
     part.placement = event.was_seated && !is_shelf ? Placement::kPlaced
                      : stays && !is_together       ? Placement::kParked
                                                    : Placement::kLoose;
@@ -217,12 +218,13 @@ void PhysicsSide::PlaceInFixture(OccurrenceId id) {
   TickCommand command;
   command.body = contact::BodyId(id.index());
   command.X_WB = part.X_WB;
-  SequenceStep step;
+  sequence::SequenceStep step;
   step.occurrence = id;
   Send(command, step, false);
 }
 
-void PhysicsSide::Send(const TickCommand& command, const SequenceStep& step, bool can_join) {
+void PhysicsSide::Send(const TickCommand& command, const sequence::SequenceStep& step,
+                       bool can_join) {
   ++given_commands_;
   if (on_command_) {
     on_command_({given_commands_, handover_.physics_t_ns.load(std::memory_order_relaxed),
@@ -254,7 +256,7 @@ OccurrenceId PhysicsSide::FindNearest(const Vec3& p_WH, Placement placement) con
   return nearest;
 }
 
-bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
+bool PhysicsSide::CanTake(const sequence::SequenceStep& step, const Vec3& p_WH) const {
   const Vec3 p_WCm = parts_[step.occurrence.index()].X_WB * CombineMass(*model_, step).p_BoBcm_B;
   if ((p_WCm - p_WH).norm() > kReach) {
     return false;
@@ -262,12 +264,12 @@ bool PhysicsSide::CanTake(const SequenceStep& step, const Vec3& p_WH) const {
   const auto is_free = [&](OccurrenceId id) {
     const auto& [placement, X_WB, leader] = parts_[id.index()];
     if (leader.is_valid() && placement == Placement::kLoose) {
-      return step.kind == SequenceStep::Kind::kRemove || !step.members.empty();
+      return step.kind == sequence::SequenceStep::Kind::kRemove || !step.members.empty();
     }
-    if (IsWithinProduct(step.kind)) {
+    if (sequence::IsWithinProduct(step.kind)) {
       return placement == PlacementBefore(step.kind);
     }
-    if (step.kind == SequenceStep::Kind::kRemove) {
+    if (step.kind == sequence::SequenceStep::Kind::kRemove) {
       return placement == Placement::kPlaced;
     }
     return step.members.empty()
@@ -292,7 +294,7 @@ bool PhysicsSide::TryHelp(std::size_t index, const Vec3& p_WH) {
   command.kind = TickCommand::Kind::kHelp;
   command.hand = index;
   command.other = *other;
-  SequenceStep step;
+  sequence::SequenceStep step;
   step.occurrence = part.occurrence;
   Send(command, step, false);
   hands_[index].helps = other;
@@ -314,8 +316,8 @@ void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
       Take(index, MakeTableStep(*model_, parts_, loose, TakeExtent::kWhole));
       return;
     }
-    const SequenceStep* insertion = FindInsertion(model_->sequence, loose);
-    SequenceStep step;
+    const sequence::SequenceStep* insertion = sequence::FindInsertion(model_->sequence, loose);
+    sequence::SequenceStep step;
     step.occurrence = loose;
     Take(index, insertion != nullptr ? *insertion : step);
     return;
@@ -326,16 +328,16 @@ void PhysicsSide::TakeNearest(std::size_t index, const Vec3& p_WH) {
     Take(index, MakeTableStep(*model_, parts_, placed, TakeExtent::kWhole));
     return;
   }
-  if (const SequenceStep* insertion = FindInsertion(model_->sequence, placed)) {
-    SequenceStep step = *insertion;
-    step.kind = SequenceStep::Kind::kRemove;
+  if (const sequence::SequenceStep* insertion = sequence::FindInsertion(model_->sequence, placed)) {
+    sequence::SequenceStep step = *insertion;
+    step.kind = sequence::SequenceStep::Kind::kRemove;
     Take(index, step);
     return;
   }
   hand.is_waiting_for_grip_to_open = true;  // closed on nothing: open before the next try
 }
 
-void PhysicsSide::Take(std::size_t index, const SequenceStep& step) {
+void PhysicsSide::Take(std::size_t index, const sequence::SequenceStep& step) {
   Hand& hand = hands_[index];
   hand.held_step = step;
   hand.held = maker_.Make(step, hand.can_join);

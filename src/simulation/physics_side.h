@@ -60,19 +60,22 @@ class PhysicsSide {
 
   /** What the next part that a hand takes up is for: its place, its way in, and what moves with it.
    Parts that were not prepared go to their drawn place by their step of the sequence. */
-  void Prepare(const SequenceStep& step, std::size_t hand = 0) { hands_[hand].prepared = step; }
+  void Prepare(const sequence::SequenceStep& step, std::size_t hand = 0) {
+    hands_[hand].prepared = step;
+  }
 
   /** Lets a hand take hold of what another hand holds as well, when it next closes within reach of
    the middle of its mass. */
   void PrepareHelp(std::size_t other, std::size_t hand) { hands_[hand].helps_next = other; }
 
   /** What a hand would have in it in this step, with the parts where they are now. */
-  [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Describe(const SequenceStep& step) {
+  [[nodiscard]] std::shared_ptr<const haptics::HeldPart> Describe(
+      const sequence::SequenceStep& step) {
     return maker_.Make(step, false);
   }
 
   /** Asks HeldPartMaker for where the parts are now. */
-  [[nodiscard]] product::OccurrenceId FindMissingPartner(const SequenceStep& step) const {
+  [[nodiscard]] product::OccurrenceId FindMissingPartner(const sequence::SequenceStep& step) const {
     return maker_.FindMissingPartner(step);
   }
 
@@ -113,8 +116,8 @@ class PhysicsSide {
  private:
   struct Hand {
     std::shared_ptr<const haptics::HeldPart> held;  ///< Kept until haptics has let go of it.
-    SequenceStep held_step;
-    std::optional<SequenceStep> prepared;
+    sequence::SequenceStep held_step;
+    std::optional<sequence::SequenceStep> prepared;
     std::optional<std::size_t> helps_next;  ///< Whose part it takes hold of next.
     std::optional<std::size_t> helps;       ///< Whose part it has taken hold of.
     bool is_waiting_for_grip_to_open{false};
@@ -125,7 +128,7 @@ class PhysicsSide {
   };
 
   /** @param step  What is taken; of what is placed or held by two the occurrence alone. */
-  void Send(const TickCommand& command, const SequenceStep& step, bool can_join);
+  void Send(const TickCommand& command, const sequence::SequenceStep& step, bool can_join);
   /** @returns whether the hand takes hold of another one's part. */
   bool TryHelp(std::size_t hand, const Vec3& p_WH);
   void FlushCommands();
@@ -136,10 +139,10 @@ class PhysicsSide {
   void MoveTogether(product::OccurrenceId id, const spatial::Pose& X_WB);
   void PublishFrame();
   void TakeNearest(std::size_t hand, const Vec3& p_WH);
-  void Take(std::size_t hand, const SequenceStep& step);
+  void Take(std::size_t hand, const sequence::SequenceStep& step);
   /** The nearest part of this placement within reach of a hand; invalid where there is none. */
   [[nodiscard]] product::OccurrenceId FindNearest(const Vec3& p_WH, Placement placement) const;
-  [[nodiscard]] bool CanTake(const SequenceStep& step, const Vec3& p_WH) const;
+  [[nodiscard]] bool CanTake(const sequence::SequenceStep& step, const Vec3& p_WH) const;
 
   std::shared_ptr<const Model> model_;
   Handover& handover_;

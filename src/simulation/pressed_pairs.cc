@@ -82,7 +82,7 @@ struct Ends {
 
 class PressSearch {
  public:
-  PressSearch(const Product& product, const Sequence& sequence)
+  PressSearch(const Product& product, const sequence::Sequence& sequence)
       : product_(product), sequence_(sequence) {
     for (const ElasticPart& part : product.elastic) {
       if (IsPressedAlongAxis(part.kind) && part.occurrence.index() < sequence.neighbours.size()) {
@@ -127,7 +127,7 @@ class PressSearch {
 
   /** How far two parts overlap as drawn [m]. */
   [[nodiscard]] double CalcOverlap(OccurrenceId a, OccurrenceId b) const {
-    for (const DrawnOverlap& overlap : sequence_.overlaps) {
+    for (const sequence::DrawnOverlap& overlap : sequence_.overlaps) {
       if (overlap.Joins(a, b)) {
         return overlap.depth;
       }
@@ -137,7 +137,7 @@ class PressSearch {
 
   /** Finds whether a step presses a part at one of its ends. */
   void FindPress(const InsertStep& insert, OccurrenceId id, double sign) {
-    const SequenceStep& step = *insert.step;
+    const sequence::SequenceStep& step = *insert.step;
     const bool is_own = insert.Moves(id);
     if (!is_own && !insert.HasPlaced(id)) {
       return;
@@ -212,14 +212,15 @@ class PressSearch {
   }
 
   const Product& product_;
-  const Sequence& sequence_;
+  const sequence::Sequence& sequence_;
   std::map<OccurrenceId, Ends> ends_;
   std::vector<PressedPair> pairs_;
 };
 
 }  // namespace
 
-std::vector<PressedPair> ListPressedPairs(const Product& product, const Sequence& sequence) {
+std::vector<PressedPair> ListPressedPairs(const Product& product,
+                                          const sequence::Sequence& sequence) {
   return PressSearch(product, sequence).Run();
 }
 

@@ -7,7 +7,7 @@
 
 #include "haptics/giving_curve.h"
 #include "product/product.h"
-#include "simulation/sequence.h"
+#include "sequence/sequence.h"
 
 /** Springs, spring washers and gaskets that a part presses together when it goes to its place, slit
  pins and sleeves that their hole presses, and lips that their shaft spreads:
@@ -34,18 +34,18 @@ struct PressedPair {
  its end, where the other end stands on a part in its place. Parts that push back one behind the
  other are pressed by one force. Empty where nothing is pressed by 1 um or more. */
 [[nodiscard]] std::vector<PressedPair> ListPressedPairs(const product::Product& product,
-                                                        const Sequence& sequence);
+                                                        const sequence::Sequence& sequence);
 
 /** Finds slit pins and sleeves of rubber that are narrower in their hole than free, or wider on
  their shaft, and what it takes to push them in: friction of their radial force, which grows with
  the length in the hole. Only where their mate has no fit of ISO 286, which would resist as well. */
 [[nodiscard]] std::vector<PressedPair> ListSqueezedPairs(const product::Product& product,
-                                                         const Sequence& sequence);
+                                                         const sequence::Sequence& sequence);
 
 /** Finds lips of seals that a shaft spreads on its way, or that go over a shaft: their radial force
  is that of mates::CalcLipStiffness(), by how much wider than the free lip the cylinders and cones
  of the shaft are where the lip is. */
 [[nodiscard]] std::vector<PressedPair> ListSpreadLips(const product::Product& product,
-                                                      const Sequence& sequence);
+                                                      const sequence::Sequence& sequence);
 
 }  // namespace hvas::simulation

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "mates/elastic_parts.h"
-#include "simulation/giving_force.h"
+#include "sequence/giving_force.h"
 #include "simulation/insert_walk.h"
 #include "simulation/pressed_pairs.h"
 
@@ -64,7 +64,7 @@ struct LipShaft {
 
 class LipSearch {
  public:
-  LipSearch(const Product& product, const Sequence& sequence)
+  LipSearch(const Product& product, const sequence::Sequence& sequence)
       : product_(product), sequence_(sequence) {
     for (const ElasticPart& part : product.elastic) {
       if (part.kind == ElasticKind::kLipSeal && mates::FindMissingSize(part).empty()) {
@@ -131,7 +131,7 @@ class LipSearch {
   }
 
   void FindSpread(const InsertStep& insert, const Lip& lip) {
-    const SequenceStep& step = *insert.step;
+    const sequence::SequenceStep& step = *insert.step;
     const OccurrenceId own = lip.seal->occurrence;
     const bool is_own = insert.Moves(own);
     if (is_own == insert.Moves(lip.shaft.part) ||
@@ -158,7 +158,7 @@ class LipSearch {
     pair.source = "lip as a short shell, Hetenyi";
     auto curve = std::make_shared<haptics::GivingCurve>();
     curve->stiffness = mates::CalcLipStiffness(*lip.seal);
-    curve->friction = FindKineticFriction(product_, own, lip.shaft.part);
+    curve->friction = sequence::FindKineticFriction(product_, own, lip.shaft.part);
     curve->spacing = until / kSpreadSteps;
     for (int i = 0; i < kSpreadSteps; ++i) {
       const double radius = lip.shaft.RadiusAt(lip.seal->lip_at + up * i * curve->spacing);
@@ -166,21 +166,22 @@ class LipSearch {
       pair.compression = std::max(pair.compression, std::min(spread, kMostSpread));
       curve->given.push_back(std::min(spread, kMostSpread));
     }
-    FinishGiven(curve->spacing, &curve->given);
+    sequence::FinishGiven(curve->spacing, &curve->given);
     pair.force = haptics::CalcGivingPeak(*curve).in;
     pair.curve = std::move(curve);
     pairs_.push_back(std::move(pair));
   }
 
   const Product& product_;
-  const Sequence& sequence_;
+  const sequence::Sequence& sequence_;
   std::vector<Lip> lips_;
   std::vector<PressedPair> pairs_;
 };
 
 }  // namespace
 
-std::vector<PressedPair> ListSpreadLips(const Product& product, const Sequence& sequence) {
+std::vector<PressedPair> ListSpreadLips(const Product& product,
+                                        const sequence::Sequence& sequence) {
   return LipSearch(product, sequence).Run();
 }
 

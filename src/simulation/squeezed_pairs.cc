@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fits/elastic_parts.h"
-#include "simulation/giving_force.h"
+#include "sequence/giving_force.h"
 #include "simulation/insert_walk.h"
 #include "simulation/pressed_pairs.h"
 
@@ -86,7 +86,7 @@ double CalcEngaged(const Mate& mate, double travel) {
 
 class SqueezeSearch {
  public:
-  SqueezeSearch(const Product& product, const Sequence& sequence)
+  SqueezeSearch(const Product& product, const sequence::Sequence& sequence)
       : product_(product), sequence_(sequence) {}
 
   std::vector<PressedPair> Run() {
@@ -135,7 +135,7 @@ class SqueezeSearch {
   }
 
   void FindSqueeze(const InsertStep& insert, const ElasticMate& side) {
-    const SequenceStep& step = *insert.step;
+    const sequence::SequenceStep& step = *insert.step;
     const OccurrenceId own = side.part->occurrence;
     const bool is_own = insert.Moves(own);
     if (is_own == insert.Moves(side.other) || !insert.HasPlaced(is_own ? side.other : own)) {
@@ -164,7 +164,7 @@ class SqueezeSearch {
     AddPair(step, side, squeeze, direction, is_own ? side.other : own);
   }
 
-  void AddPair(const SequenceStep& step, const ElasticMate& side, const Squeeze& squeeze,
+  void AddPair(const sequence::SequenceStep& step, const ElasticMate& side, const Squeeze& squeeze,
                double direction, OccurrenceId against) {
     const Mate& mate = *side.mate;
     const double length = CalcEngaged(mate, 0);
@@ -172,7 +172,7 @@ class SqueezeSearch {
         direction > 0 ? mate.hole_high - mate.shaft_low : mate.shaft_high - mate.hole_low;
     auto curve = std::make_shared<haptics::GivingCurve>();
     curve->stiffness = squeeze.stiffness;
-    curve->friction = FindKineticFriction(product_, side.part->occurrence, side.other);
+    curve->friction = sequence::FindKineticFriction(product_, side.part->occurrence, side.other);
     curve->spacing = until / kSqueezeSteps;
     for (int i = 0; i < kSqueezeSteps; ++i) {
       const double engaged = CalcEngaged(mate, direction * i * curve->spacing);
@@ -193,14 +193,15 @@ class SqueezeSearch {
   }
 
   const Product& product_;
-  const Sequence& sequence_;
+  const sequence::Sequence& sequence_;
   std::vector<ElasticMate> mates_;
   std::vector<PressedPair> pairs_;
 };
 
 }  // namespace
 
-std::vector<PressedPair> ListSqueezedPairs(const Product& product, const Sequence& sequence) {
+std::vector<PressedPair> ListSqueezedPairs(const Product& product,
+                                           const sequence::Sequence& sequence) {
   return SqueezeSearch(product, sequence).Run();
 }
 

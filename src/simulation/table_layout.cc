@@ -9,7 +9,7 @@
 
 #include "dynamics/world.h"
 #include "product/product.h"
-#include "simulation/simulated_person.h"
+#include "simulation/person_task.h"
 
 namespace hvas::simulation {
 namespace {
@@ -28,7 +28,7 @@ spatial::Box DrawnBox(const Product& product, OccurrenceId id) {
 }
 
 /** The box around all that a step moves, as drawn. */
-spatial::Box BoxOfStep(const Product& product, const SequenceStep& step) {
+spatial::Box BoxOfStep(const Product& product, const sequence::SequenceStep& step) {
   spatial::Box box = DrawnBox(product, step.occurrence);
   for (const OccurrenceId member : step.members) {
     box.Add(DrawnBox(product, member));
@@ -46,8 +46,8 @@ double PlaceOnShelf(Model* model) {
   }
   std::map<OccurrenceId, spatial::Box> boxes;  // by the part that leads
   double widest = 0;
-  for (const SequenceStep& step : model->sequence.steps) {
-    if (step.kind == SequenceStep::Kind::kPark) {
+  for (const sequence::SequenceStep& step : model->sequence.steps) {
+    if (step.kind == sequence::SequenceStep::Kind::kPark) {
       boxes[step.occurrence] = BoxOfStep(product, step);
       widest = std::max(widest, boxes[step.occurrence].size().norm());
     }
@@ -55,8 +55,8 @@ double PlaceOnShelf(Model* model) {
   reach = std::max(reach, 0.5 * widest);
   const double radius = 0.5 * product.box_W.size().norm() + reach + kTransferGap;
   double place = -0.5 * (widest + kTableGap) * static_cast<double>(boxes.size() - 1);
-  for (SequenceStep& step : model->sequence.steps) {
-    if (step.kind == SequenceStep::Kind::kPark) {
+  for (sequence::SequenceStep& step : model->sequence.steps) {
+    if (step.kind == sequence::SequenceStep::Kind::kPark) {
       const Vec3 shelf = product.box_W.centre() + Vec3(place, -(radius + widest + kTableGap), 0);
       step.offset_W = shelf - boxes[step.occurrence].centre();
       place += widest + kTableGap;
@@ -67,7 +67,7 @@ double PlaceOnShelf(Model* model) {
 
 /** The lowest point that a part reaches on its way in, and while it is carried to the beginning of
  its way around the product (SimulatedPerson). */
-double CalcLowest(const Model& model, const SequenceStep& step) {
+double CalcLowest(const Model& model, const sequence::SequenceStep& step) {
   const Product& product = *model.product;
   const spatial::Box box = BoxOfStep(product, step);
   const spatial::Pose& X_WB_goal = product.occurrences[step.occurrence.index()].X_WB;
@@ -90,8 +90,8 @@ double CalcLowest(const Model& model, const SequenceStep& step) {
 double CalcTableHeight(const Model& model) {
   const spatial::Box& box = model.product->box_W;
   double height = box.low.z() - 0.5 * kFixtureShare * box.size().norm();
-  for (const SequenceStep& step : model.sequence.steps) {
-    if (step.kind != SequenceStep::Kind::kBase) {
+  for (const sequence::SequenceStep& step : model.sequence.steps) {
+    if (step.kind != sequence::SequenceStep::Kind::kBase) {
       height = std::min(height, CalcLowest(model, step) - kTransferGap);
     }
   }
@@ -112,7 +112,7 @@ std::vector<std::size_t> ListAsTheyLie(const Model& model, std::vector<std::size
     const product::PartId part = product.occurrences[i].part;
     const auto step = first_steps.find(part);
     const double size = model.bodies[i].shape->box_B().size().norm();
-    const bool is_base = OccurrenceId(i) == FindBase(model.sequence);
+    const bool is_base = OccurrenceId(i) == sequence::FindBase(model.sequence);
     return std::tuple(is_base, std::ilogb(size),
                       step == first_steps.end() ? model.sequence.steps.size() : step->second, part);
   };

@@ -22,8 +22,8 @@ OccurrenceId PartnerOf(const product::Mate& mate, OccurrenceId id) {
 }
 
 /** Index of the step by which a part goes to its place; the end for a base. */
-std::size_t TurnOf(const Sequence& sequence, OccurrenceId id) {
-  const SequenceStep* step = FindInsertion(sequence, id);
+std::size_t TurnOf(const sequence::Sequence& sequence, OccurrenceId id) {
+  const sequence::SequenceStep* step = sequence::FindInsertion(sequence, id);
   return step != nullptr ? static_cast<std::size_t>(step - sequence.steps.data()) : 0;
 }
 
@@ -41,7 +41,7 @@ double CalcLowest(const Model& model, const std::vector<OccurrenceId>& ids,
   return lowest;
 }
 
-std::vector<OccurrenceId> ListTaken(const SequenceStep& step) {
+std::vector<OccurrenceId> ListTaken(const sequence::SequenceStep& step) {
   std::vector<OccurrenceId> ids{step.occurrence};
   ids.insert(ids.end(), step.members.begin(), step.members.end());
   return ids;
@@ -49,9 +49,10 @@ std::vector<OccurrenceId> ListTaken(const SequenceStep& step) {
 
 /** The way in to the target, as drawn, by the step of that part of a mate whose turn comes later.
  */
-std::optional<SequenceStep> FindWayIn(const Model& model, const std::vector<OccurrenceId>& taken,
-                                      const std::vector<OccurrenceId>& target) {
-  std::optional<SequenceStep> way;
+std::optional<sequence::SequenceStep> FindWayIn(const Model& model,
+                                                const std::vector<OccurrenceId>& taken,
+                                                const std::vector<OccurrenceId>& target) {
+  std::optional<sequence::SequenceStep> way;
   for (const OccurrenceId id : taken) {
     for (const product::MateId mate_id : model.mates_of[id.index()]) {
       const product::Mate& mate = model.product->mates[mate_id.index()];
@@ -61,7 +62,8 @@ std::optional<SequenceStep> FindWayIn(const Model& model, const std::vector<Occu
         continue;
       }
       const bool comes_later = TurnOf(model.sequence, id) > TurnOf(model.sequence, other);
-      const SequenceStep* step = FindInsertion(model.sequence, comes_later ? id : other);
+      const sequence::SequenceStep* step =
+          sequence::FindInsertion(model.sequence, comes_later ? id : other);
       if (step == nullptr) {
         continue;
       }
@@ -105,8 +107,8 @@ void SeparatePart(OccurrenceId id, std::vector<PartState>* parts) {
   JoinParts(rest, rest.size() > 1 ? rest.front() : OccurrenceId(), parts);
 }
 
-SequenceStep MakeTableStep(const Model& model, const std::vector<PartState>& parts, OccurrenceId id,
-                           TakeExtent extent) {
+sequence::SequenceStep MakeTableStep(const Model& model, const std::vector<PartState>& parts,
+                                     OccurrenceId id, TakeExtent extent) {
   const bool is_placed = parts[id.index()].placement == Placement::kPlaced;
   const bool is_alone = extent == TakeExtent::kAlone;
   const std::vector<OccurrenceId> taken =
@@ -119,9 +121,9 @@ SequenceStep MakeTableStep(const Model& model, const std::vector<PartState>& par
     });
   };
   // The way of the member that meets the product first; where none does, of the last to come.
-  const SequenceStep* way = nullptr;
-  for (const SequenceStep& step : model.sequence.steps) {
-    if (step.kind != SequenceStep::Kind::kInsert || !Contains(taken, step.occurrence)) {
+  const sequence::SequenceStep* way = nullptr;
+  for (const sequence::SequenceStep& step : model.sequence.steps) {
+    if (step.kind != sequence::SequenceStep::Kind::kInsert || !Contains(taken, step.occurrence)) {
       continue;
     }
     way = &step;
@@ -129,15 +131,16 @@ SequenceStep MakeTableStep(const Model& model, const std::vector<PartState>& par
       break;
     }
   }
-  SequenceStep move = way != nullptr ? *way : SequenceStep();
-  move.kind = is_placed || is_alone ? SequenceStep::Kind::kRemove : SequenceStep::Kind::kInsert;
+  sequence::SequenceStep move = way != nullptr ? *way : sequence::SequenceStep();
+  move.kind = is_placed || is_alone ? sequence::SequenceStep::Kind::kRemove
+                                    : sequence::SequenceStep::Kind::kInsert;
   move.occurrence = taken.front();
   move.members.assign(taken.begin() + 1, taken.end());
   return move;
 }
 
 std::vector<TablePlace> ListTablePlaces(const Model& model, const std::vector<PartState>& parts,
-                                        const SequenceStep& step) {
+                                        const sequence::SequenceStep& step) {
   constexpr double kTableTolerance = 50e-6;  // [m]: as deep as a part may come on its way home.
   const std::vector<OccurrenceId> taken = ListTaken(step);
   const OccurrenceId own_leader = parts[step.occurrence.index()].leader;
@@ -168,7 +171,7 @@ std::vector<TablePlace> ListTablePlaces(const Model& model, const std::vector<Pa
     const spatial::Pose X_WW =
         parts[leader.index()].X_WB * model.bodies[leader.index()].X_WB_goal.Inverse();
     place.X_WB_goal = X_WW * body.X_WB_goal;
-    const std::optional<SequenceStep> way = FindWayIn(model, taken, place.target);
+    const std::optional<sequence::SequenceStep> way = FindWayIn(model, taken, place.target);
     const bool has_room =
         CalcLowest(model, taken, place.X_WB_goal) > model.table_z - kTableTolerance;
     if (!way || !(has_room || place.starts_in_place)) {
@@ -184,7 +187,7 @@ std::vector<TablePlace> ListTablePlaces(const Model& model, const std::vector<Pa
 std::shared_ptr<const haptics::RigidGroup> GroupStore::Get(const std::vector<OccurrenceId>& ids) {
   std::shared_ptr<const haptics::RigidGroup>& known = groups_[ids];
   if (known == nullptr) {
-    SequenceStep step;
+    sequence::SequenceStep step;
     step.occurrence = ids.front();
     step.members.assign(ids.begin() + 1, ids.end());
     const dynamics::MassProperties mass = CombineMass(model_, step);

@@ -33,8 +33,9 @@ void SeparatePart(product::OccurrenceId id, std::vector<PartState>* parts);
 /** The move of a part that was put together with others: its subassembly as one body, into its
  place or out of it (kRemove), by the way of the member whose mates lead there; or the part alone,
  out of its subassembly (kRemove). @pre the part has a leader. */
-[[nodiscard]] SequenceStep MakeTableStep(const Model& model, const std::vector<PartState>& parts,
-                                         product::OccurrenceId id, TakeExtent extent);
+[[nodiscard]] sequence::SequenceStep MakeTableStep(const Model& model,
+                                                   const std::vector<PartState>& parts,
+                                                   product::OccurrenceId id, TakeExtent extent);
 
 /** A place of what a hand takes at loose parts on the table: as drawn, in their present pose. */
 struct TablePlace {
@@ -49,7 +50,7 @@ struct TablePlace {
  leaves room. In the order of the targets' leaders. */
 [[nodiscard]] std::vector<TablePlace> ListTablePlaces(const Model& model,
                                                       const std::vector<PartState>& parts,
-                                                      const SequenceStep& step);
+                                                      const sequence::SequenceStep& step);
 
 /** Rigid groups of a model's parts, each made once: what moves on the haptic thread refers to them
  as long as the simulation is there. */

@@ -1,5 +1,7 @@
 #include "studio/live_hand.h"
 
+#include "person/person_at_device.h"
+
 namespace hvas::studio {
 namespace {
 
@@ -59,18 +61,18 @@ LiveHand::LiveHand(const HandSetup& setup, const HandPurpose& purpose,
     haptics::Apply(purpose.guidance, &tick_options_);
   }
   if (purpose.has_person) {
-    person_ = std::make_unique<simulation::SimulatedPerson>(
-        is_emulated ? simulation::MakePersonOptions(tick_options_) : simulation::PersonOptions(),
+    person_ = std::make_unique<person::SimulatedPerson>(
+        is_emulated ? person::MakePersonOptions(tick_options_) : person::PersonOptions(),
         purpose.seed, purpose.X_WH);
   }
   if (is_emulated) {
-    simulation::DeviceHolder* holder = &pointer_;
+    person::DeviceHolder* holder = &pointer_;
     if (person_ != nullptr) {
       holder = person_.get();
     }
     const bool is_live = !purpose.clock->is_steered();
-    at_device_ = std::make_unique<simulation::PersonAtDevice>(holder, device_->emulator.get(),
-                                                              device_->device.get(), is_live);
+    at_device_ = std::make_unique<person::PersonAtDevice>(holder, device_->emulator.get(),
+                                                          device_->device.get(), is_live);
   } else if (goes_through_device) {
     at_device_ = std::make_unique<simulation::DeviceOperator>(device_->device.get());
   }

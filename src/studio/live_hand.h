@@ -6,8 +6,8 @@
 #include "base/loop_clock.h"
 #include "device/opened_device.h"
 #include "haptics/paper_guidance.h"
+#include "person/simulated_person.h"
 #include "simulation/device_session.h"
-#include "simulation/simulated_person.h"
 #include "studio/live_trial.h"
 #include "studio/pointer.h"
 
@@ -44,7 +44,7 @@ class LiveHand {
   [[nodiscard]] simulation::Operator* active() const { return active_; }
 
   /** Null where the simulated person does not move this hand. */
-  [[nodiscard]] simulation::SimulatedPerson* person() const { return person_.get(); }
+  [[nodiscard]] person::SimulatedPerson* person() const { return person_.get(); }
 
   [[nodiscard]] PointerOperator& pointer() { return pointer_; }
 
@@ -57,7 +57,7 @@ class LiveHand {
   std::shared_ptr<device::OpenedDevice> device_;
   haptics::TickOptions tick_options_;
   PointerOperator pointer_;
-  std::unique_ptr<simulation::SimulatedPerson> person_;
+  std::unique_ptr<person::SimulatedPerson> person_;
   std::unique_ptr<simulation::Operator> at_device_;  ///< Null where no device is in the loop.
   simulation::Operator* active_{nullptr};
   bool follows_pointer_{false};

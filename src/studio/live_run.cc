@@ -21,7 +21,7 @@ std::vector<std::unique_ptr<LiveHand>> MakeHands(const LiveOptions& options,
   std::vector<std::unique_ptr<LiveHand>> hands;
   for (const HandSetup& setup : options.hands) {
     const HandPurpose purpose{options.has_person,
-                              simulation::SeedOfHand(options.seed, hands.size()),
+                              person::SeedOfHand(options.seed, hands.size()),
                               simulation::StartOfHand(model),
                               options.rate_hz,
                               options.trial.get(),
@@ -41,8 +41,8 @@ std::vector<haptics::TickOptions> TicksOf(const std::vector<std::unique_ptr<Live
   return ticks;
 }
 
-simulation::Persons PersonsOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
-  simulation::Persons persons{};
+simulation::TaskOperators MoversOf(const std::vector<std::unique_ptr<LiveHand>>& hands) {
+  simulation::TaskOperators persons{};
   for (std::size_t i = 0; i < hands.size(); ++i) {
     persons[i] = hands[i]->person();
   }
@@ -88,7 +88,7 @@ LiveRun::LiveRun(std::shared_ptr<const simulation::Model> model, const LiveState
       trial_(options.trial),
       hands_(MakeHands(options, *model)),
       simulation_(std::make_unique<simulation::Simulation>(std::move(model), TicksOf(hands_))),
-      assembly_(simulation_.get(), PersonsOf(hands_), this),
+      assembly_(simulation_.get(), MoversOf(hands_), this),
       plan_(options.disassembly),
       begin_ns_(MonotonicNs()) {
   if (!start.parts.empty()) {
@@ -151,7 +151,7 @@ void LiveRun::Run(const LiveOptions& options) {
   (void)simulation::RunRealtime(execution);
 }
 
-void LiveRun::Take(std::size_t hand, const simulation::SequenceStep& step,
+void LiveRun::Take(std::size_t hand, const sequence::SequenceStep& step,
                    const spatial::Pose& X_WH) {
   const std::lock_guard lock(mutex_);
   tasks_.emplace_back([this, hand, step, X_WH] {
@@ -212,7 +212,7 @@ void LiveRun::Catch() {
     return;
   }
   if (part.placement == Placement::kLoose) {
-    const simulation::SequenceStep step =
+    const sequence::SequenceStep step =
         FindStep(model(), observed_, passing_->id, simulation::TakeExtent::kWhole);
     const Vec3 p_BoBcm_B = simulation::CombineMass(model(), step).p_BoBcm_B;
     simulation_->physics().Prepare(step, passing_->to);
@@ -295,7 +295,7 @@ std::size_t LiveRun::FindNextStep(const std::vector<simulation::PartState>& part
   if (!disassembly_) {
     return assembly_.next_step();
   }
-  using Kind = simulation::SequenceStep::Kind;
+  using Kind = sequence::SequenceStep::Kind;
   const auto& steps = model().sequence.steps;
   const auto open = std::find_if(steps.begin(), steps.end(), [&parts](const auto& step) {
     return (step.kind == Kind::kBase || step.kind == Kind::kInsert) &&

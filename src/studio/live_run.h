@@ -67,7 +67,7 @@ class LiveRun final : private simulation::Sink {
 
   /** Moves a hand to a part and closes it there. Any thread may call it.
    @pre the hand follows a pointer. */
-  void Take(std::size_t hand, const simulation::SequenceStep& step, const spatial::Pose& X_WH);
+  void Take(std::size_t hand, const sequence::SequenceStep& step, const spatial::Pose& X_WH);
 
   /** Moves a hand to what another one holds, and closes it there: both hold it then. Any thread may
    call it. @pre both follow pointers. */

@@ -24,7 +24,7 @@ Result<std::shared_ptr<LiveTrial>> LiveTrial::Make(const Plan& plan, const simul
     trial->recording_.emplace(trial->recorder_.get(), model);
   }
   trial->pair_ = study::DescribePair(model, step);
-  const simulation::SequenceStep& own = model.sequence.steps[step];
+  const sequence::SequenceStep& own = model.sequence.steps[step];
   trial->watch_.emplace(own.occurrence, own.extraction_W, plan.mating_window, period_s,
                         trial->recording_ ? &*trial->recording_ : nullptr);
   return trial;

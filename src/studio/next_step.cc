@@ -5,8 +5,8 @@
 namespace hvas::studio {
 
 using product::OccurrenceId;
+using sequence::SequenceStep;
 using simulation::Placement;
-using simulation::SequenceStep;
 
 SequenceStep FindStep(const simulation::Model& model, const LiveState& state, OccurrenceId id,
                       simulation::TakeExtent extent) {
@@ -20,7 +20,8 @@ SequenceStep FindStep(const simulation::Model& model, const LiveState& state, Oc
                                                            id) != step.members.end();
     const Placement placement = state.parts[step.occurrence.index()].placement;
     const bool is_next = i == state.next_step && step.occurrence == id;
-    if (is_next && IsWithinProduct(step.kind) && placement == PlacementBefore(step.kind)) {
+    if (is_next && IsWithinProduct(step.kind) &&
+        placement == simulation::PlacementBefore(step.kind)) {
       return step;
     }
     if (IsWithinProduct(step.kind) || step.kind == SequenceStep::Kind::kBase || !has_it ||

@@ -15,9 +15,9 @@ namespace {
 
 using assembly::CheckedOrder;
 using assembly::OrderPlan;
+using orders::FoundOrder;
+using orders::OrderRules;
 using product::OccurrenceId;
-using simulation::FoundOrder;
-using simulation::OrderRules;
 
 /** An order of which everything is known that a client sees. */
 struct DescribedOrder {
@@ -40,7 +40,7 @@ Json LeadersOf(const OrderRules& rules, const std::vector<std::size_t>& moves) {
 Json MakeOrderJson(const DescribedOrder& described) {
   Json moves = Json::array();
   for (std::size_t place = 0; place < described.moves.size(); ++place) {
-    const simulation::FreeMove& move = described.rules.moves[described.moves[place]];
+    const orders::FreeMove& move = described.rules.moves[described.moves[place]];
     const std::vector<OccurrenceId> members(move.parts.begin() + 1, move.parts.end());
     const bool has_holds = described.statics != nullptr && described.statics->holds[place];
     moves.push_back(
@@ -51,15 +51,15 @@ Json MakeOrderJson(const DescribedOrder& described) {
                             : Json::array()},
          {"in_tool_space",
           described.order != nullptr
-              ? ToJson(simulation::ListInToolSpace(described.rules, *described.order, place))
+              ? ToJson(orders::ListInToolSpace(described.rules, *described.order, place))
               : Json::array()},
          {"holds", has_holds ? ToJson(*described.statics->holds[place]) : Json(nullptr)}});
   }
   const FoundOrder* order = described.order;
-  const auto count = [order](auto simulation::OrderCounts::*which) {
+  const auto count = [order](auto orders::OrderCounts::*which) {
     return order != nullptr ? Json(order->counts.*which) : Json(nullptr);
   };
-  using simulation::OrderCounts;
+  using orders::OrderCounts;
   return {{"moves", std::move(moves)},
           {"is_possible", order != nullptr},
           {"cost", order != nullptr ? Json(order->cost) : Json(nullptr)},
@@ -95,12 +95,12 @@ Result<Json> Describe(const OrderRules& rules, const Result<CheckedOrder>& check
                         checked->statics ? &*checked->statics : nullptr});
 }
 
-Result<Json> Describe(const simulation::Model& model, const Result<simulation::GapReason>& reason) {
+Result<Json> Describe(const simulation::Model& model, const Result<orders::GapReason>& reason) {
   if (!reason) {
     return Unexpected(reason.error());
   }
   const std::string png = evidence::MakeGapPicture(model, *reason);
-  return Json{{"lines", simulation::FormatGapReason(model, *reason)},
+  return Json{{"lines", orders::FormatGapReason(model, *reason)},
               {"picture", png.empty() ? png : pages::MakePngAddress(png)},
               {"picture_about", evidence::DescribeGapPicture(model, *reason)}};
 }
@@ -130,7 +130,7 @@ Result<Json> Hub::DoExplainGap(const Caller& caller, const protocol::ExplainGapC
   const auto posted = workbench_->orders().Explain(
       product::OccurrenceId(command.occurrence),
       [events = &workbench_->events(), to = caller.id, id = IdOf(caller.command)](
-          const simulation::Model& model, const Result<simulation::GapReason>& reason) {
+          const simulation::Model& model, const Result<orders::GapReason>& reason) {
         events->Publish(MakeDeferredReply(to, id, Describe(model, reason)));
       });
   return posted ? Result<Json>(MakeDeferredResult()) : Unexpected(posted.error());

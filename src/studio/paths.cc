@@ -28,12 +28,12 @@ Result<std::shared_ptr<const SweptGlb>> Compute(const Sweeper::Task& task,
                                                 const std::stop_token& stop) {
   const product::Occurrence& occurrence = task.model->product->occurrences[task.occurrence.index()];
   const product::Part& part = task.model->product->part_of(task.occurrence);
-  sweep::SweepOptions options;
+  paths::SweepOptions options;
   options.resolution = task.resolution;
   options.thinnest_wall = product::CalcThinnestWall(part).value_or(0);
   options.threads = 1;  // the other cores are left to the loops of the hand
   options.stop = stop;
-  const auto swept = sweep::Sweep(simulation::MakeShapeSource(part), task.path, options);
+  const auto swept = paths::Sweep(simulation::MakeShapeSource(part), task.path, options);
   if (!swept) {
     Error error = swept.error();
     error.where = occurrence.name;
@@ -110,7 +110,7 @@ PathLog::HeldPath PathLog::PathOf(OccurrenceId id) const {
   return held;
 }
 
-Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& name) {
+Result<std::string> MakeGlb(const paths::SurfaceMesh& mesh, const std::string& name) {
   product::Part part;
   part.id = product::PartId(0);
   part.name = name;

@@ -13,9 +13,9 @@
 
 #include "base/job_thread.h"
 #include "base/result.h"
+#include "paths/swept_volume.h"
 #include "simulation/model.h"
 #include "simulation/simulation.h"
-#include "sweep/swept_volume.h"
 
 namespace hvas::studio {
 
@@ -31,7 +31,7 @@ class PathLog {
 
   /** Path of a part in its last hold. */
   struct HeldPath {
-    sweep::Path path;       ///< Empty for a part that was never held.
+    paths::Path path;       ///< Empty for a part that was never held.
     std::size_t stride{1};  ///< One frame is kept of so many in which the part moved.
   };
 
@@ -59,7 +59,7 @@ struct SweptGlb {
 };
 
 /** Makes the binary glTF of a closed mesh. Errors: those of cad::MakeGlb. */
-[[nodiscard]] Result<std::string> MakeGlb(const sweep::SurfaceMesh& mesh, const std::string& name);
+[[nodiscard]] Result<std::string> MakeGlb(const paths::SurfaceMesh& mesh, const std::string& name);
 
 /** Computes swept volumes, one after the other, on a thread of its own. */
 class Sweeper {
@@ -73,7 +73,7 @@ class Sweeper {
   struct Task {
     std::shared_ptr<const simulation::Model> model;
     product::OccurrenceId occurrence;
-    sweep::Path path;
+    paths::Path path;
     double resolution{0};  ///< [m]; 0: chosen.
     DoneFn done;           ///< Called on the sweeper's thread; never after Stop().
   };

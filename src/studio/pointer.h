@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "base/triple_buffer.h"
-#include "simulation/simulated_person.h"
+#include "person/simulated_person.h"
 
 namespace hvas::studio {
 
@@ -22,7 +22,7 @@ struct PointerInput {
  gate removes the force and the motion stops. With an emulated device in the hand, the mechanics of
  the device move the hand. Step and Intend are for the haptic thread, Move for one other thread.
  RT-safe. */
-class PointerOperator final : public simulation::Operator, public simulation::DeviceHolder {
+class PointerOperator final : public simulation::Operator, public person::DeviceHolder {
  public:
   /** Age at which the input times out [ns]. */
   static constexpr std::int64_t kInputTimeoutNs = 250'000'000;
@@ -38,9 +38,7 @@ class PointerOperator final : public simulation::Operator, public simulation::De
   [[nodiscard]] simulation::HandReference Intend(
       const simulation::OperatorInput& input) noexcept override;
 
-  [[nodiscard]] const simulation::PersonOptions& options() const noexcept override {
-    return options_;
-  }
+  [[nodiscard]] const person::PersonOptions& options() const noexcept override { return options_; }
 
  private:
   /** Reads the newest input and calculates its age. */
@@ -48,7 +46,7 @@ class PointerOperator final : public simulation::Operator, public simulation::De
   void Follow(const spatial::Pose& X_WH, double dt) noexcept;
 
   const Clock& clock_;
-  simulation::PersonOptions options_;
+  person::PersonOptions options_;
   TripleBuffer<PointerInput> inputs_;
   spatial::Pose X_WH_;
   spatial::Pose X_WS_;  ///< State of the first of the filter's two stages.

@@ -18,7 +18,7 @@ Json DescribeRemoval(const Removal& removal) {
     occurrences.push_back(member.value());
   }
   Json waits_for = Json::array();
-  for (const simulation::Obstacle& obstacle : removal.waits_for) {
+  for (const sequence::Obstacle& obstacle : removal.waits_for) {
     waits_for.push_back(obstacle.occurrence.value());
   }
   return {{"occurrences", std::move(occurrences)},

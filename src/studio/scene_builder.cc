@@ -7,8 +7,8 @@
 #include "assembly/plan_order.h"
 #include "base/digest.h"
 #include "cad/glb.h"
-#include "simulation/order_rules.h"
-#include "simulation/order_search.h"
+#include "orders/order_rules.h"
+#include "orders/order_search.h"
 #include "studio/commands.h"
 #include "studio/event_json.h"
 #include "studio/gzip.h"
@@ -129,12 +129,11 @@ Result<SharedScene> SceneBuilder::ApplyEdits(const OpenScene& opened,
   if (!wanted) {
     return Unexpected(wanted.error());
   }
-  return ChangeOrder(*scene, simulation::FindOrderRules(*scene->model, {}), wanted->occurrences,
-                     {});
+  return ChangeOrder(*scene, orders::FindOrderRules(*scene->model, {}), wanted->occurrences, {});
 }
 
 Result<SharedScene> SceneBuilder::ChangeOrder(const OpenScene& before,
-                                              const simulation::OrderRules& rules,
+                                              const orders::OrderRules& rules,
                                               const std::vector<product::OccurrenceId>& occurrences,
                                               const std::stop_token& stop) {
   assembly::PlanOptions options;
@@ -148,8 +147,8 @@ Result<SharedScene> SceneBuilder::ChangeOrder(const OpenScene& before,
                 "check the order, and move that part");
   }
   auto scene = std::make_shared<OpenScene>(before);
-  scene->model = simulation::ChangeOrder(
-      *before.model, simulation::ListSteps(rules, *checked->order), stop, &scene->diagnostics);
+  scene->model = simulation::ChangeOrder(*before.model, orders::ListSteps(rules, *checked->order),
+                                         stop, &scene->diagnostics);
   std::erase_if(scene->edits, IsOrder);
   scene->edits.push_back(
       {{"command", protocol::SetOrderCommand::kName}, {"occurrences", ToJson(occurrences)}});

@@ -12,8 +12,8 @@
 #include "base/result.h"
 #include "cad/import.h"
 #include "contact/shape_cache.h"
+#include "orders/order_rules.h"
 #include "product/product.h"
-#include "simulation/order_rules.h"
 #include "studio/edit.h"
 #include "studio/json.h"
 #include "studio/open_scene.h"
@@ -75,7 +75,7 @@ class SceneBuilder {
    @param rules  Those of the scene's model.
    @param occurrences  As of the command "set_order". */
   [[nodiscard]] Result<std::shared_ptr<const OpenScene>> ChangeOrder(
-      const OpenScene& before, const simulation::OrderRules& rules,
+      const OpenScene& before, const orders::OrderRules& rules,
       const std::vector<product::OccurrenceId>& occurrences, const std::stop_token& stop);
 
  private:

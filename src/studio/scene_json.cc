@@ -15,8 +15,8 @@ namespace hvas::studio {
 namespace {
 
 using product::OccurrenceId;
+using sequence::SequenceStep;
 using simulation::Model;
-using simulation::SequenceStep;
 
 std::string HexOf(const product::Color& color) {
   const auto byte = [](float channel) {
@@ -39,6 +39,8 @@ const char* NameOf(SequenceStep::Kind kind) {
       return "aside";
     case SequenceStep::Kind::kReturn:
       return "return";
+    case SequenceStep::Kind::kAssume:
+      return "assume";
   }
   return "insert";
 }
@@ -176,7 +178,7 @@ Json MatesOf(const Model& model) {
 
 Json LeftOutOf(const simulation::Model& model) {
   Json left_out = Json::array();
-  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+  for (const sequence::SequenceGap& gap : model.sequence.gaps) {
     left_out.push_back({{"occurrence", gap.occurrence.value()}, {"reason", gap.reason}});
   }
   return left_out;

@@ -5,9 +5,9 @@
 namespace hvas::studio {
 
 using product::OccurrenceId;
+using sequence::SequenceStep;
 using simulation::DisassemblyPlan;
 using simulation::Placement;
-using simulation::SequenceStep;
 
 Result<void> WorkbenchDemo::Start() {
   auto idle = live_->CheckIdle();
@@ -61,7 +61,7 @@ Result<DisassemblyPlan> WorkbenchDemo::MakePlan(OccurrenceId id) const {
     return Fail(ErrorCode::kNotFound, "there is no such part", fmt::format("o{}", id.value()), "");
   }
   const std::string& name = model.product->occurrences[id.index()].name;
-  if (simulation::FindBase(model.sequence) == id) {
+  if (sequence::FindBase(model.sequence) == id) {
     return Fail(ErrorCode::kInvalid, "the part is the base, which stays in the fixture", name,
                 "take the other parts off it");
   }

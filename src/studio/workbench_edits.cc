@@ -10,10 +10,10 @@
 namespace hvas::studio {
 namespace {
 
+using sequence::SequenceStep;
 using simulation::Placement;
-using simulation::SequenceStep;
 
-bool HasSameOrder(const simulation::Sequence& a, const simulation::Sequence& b) {
+bool HasSameOrder(const sequence::Sequence& a, const sequence::Sequence& b) {
   return std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(),
                     [](const SequenceStep& x, const SequenceStep& y) {
                       return x.kind == y.kind && x.occurrence == y.occurrence;

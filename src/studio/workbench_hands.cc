@@ -14,8 +14,8 @@ namespace hvas::studio {
 namespace {
 
 using product::OccurrenceId;
+using sequence::SequenceStep;
 using simulation::Placement;
-using simulation::SequenceStep;
 
 /** Explains why a part cannot be taken; none where it can. */
 std::optional<Error> ExplainUnavailable(Placement placement, const std::string& name) {

@@ -19,8 +19,8 @@ namespace hvas::studio {
 
 /** What a hand takes. */
 struct TakenParts {
-  spatial::Pose X_WH;             ///< The hand moves there.
-  simulation::SequenceStep step;  ///< What moves, and its way in.
+  spatial::Pose X_WH;           ///< The hand moves there.
+  sequence::SequenceStep step;  ///< What moves, and its way in.
   std::vector<simulation::TablePlace> table_places;
 };
 

@@ -7,8 +7,8 @@
 
 namespace hvas::studio {
 
+using orders::OrderRules;
 using product::OccurrenceId;
-using simulation::OrderRules;
 
 namespace {
 
@@ -34,10 +34,10 @@ void WorkbenchOrders::Keep(const std::shared_ptr<const Model>& model, const Orde
 const OrderRules& WorkbenchOrders::RulesOf(const std::shared_ptr<const Model>& model,
                                            const std::stop_token& stop) {
   if (model_ != model) {
-    simulation::OrderRuleOptions options;
+    orders::OrderRuleOptions options;
     options.stop = stop;
     options.progress = MakeStageProgress(parts_.events, "ways of the parts");
-    Keep(model, simulation::FindOrderRules(*model, options));
+    Keep(model, orders::FindOrderRules(*model, options));
     if (stop.stop_requested()) {
       model_ = nullptr;  // Some rules are missing.
     }
@@ -106,10 +106,10 @@ void WorkbenchOrders::DoSet(const std::vector<OccurrenceId>& occurrences,
 Result<void> WorkbenchOrders::Explain(OccurrenceId id, const ExplainedFn& done) {
   return Post(
       [this, id, done](const std::shared_ptr<const Model>& model, const std::stop_token& stop) {
-        simulation::GapReasonOptions options;
+        orders::GapReasonOptions options;
         options.stop = stop;
         options.progress = MakeStageProgress(parts_.events, "why the part is left out");
-        done(*model, simulation::ExplainGap(*model, id, options));
+        done(*model, orders::ExplainGap(*model, id, options));
       });
 }
 

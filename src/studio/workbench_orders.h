@@ -8,7 +8,7 @@
 #include "assembly/plan_order.h"
 #include "base/job_thread.h"
 #include "base/result.h"
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 #include "studio/event_bus.h"
 #include "studio/live_scene.h"
 #include "studio/scene_builder.h"
@@ -33,11 +33,11 @@ class WorkbenchOrders {
 
   /** Called on the worker thread. */
   using FoundFn = std::function<void(const Result<assembly::OrderPlan>& plan)>;
-  using CheckedFn = std::function<void(const simulation::OrderRules& rules,
+  using CheckedFn = std::function<void(const orders::OrderRules& rules,
                                        const Result<assembly::CheckedOrder>& order)>;
 
   using ExplainedFn =
-      std::function<void(const Model& model, const Result<simulation::GapReason>& reason)>;
+      std::function<void(const Model& model, const Result<orders::GapReason>& reason)>;
 
   explicit WorkbenchOrders(const Parts& parts) : parts_(parts) {}
 
@@ -54,7 +54,7 @@ class WorkbenchOrders {
   [[nodiscard]] Result<void> Set(const std::vector<product::OccurrenceId>& occurrences);
 
   /** Explains why a part cannot be brought in. Reports progress by events. Errors: kNotFound where
-   nothing is open; those of simulation::ExplainGap. */
+   nothing is open; those of orders::ExplainGap. */
   [[nodiscard]] Result<void> Explain(product::OccurrenceId id, const ExplainedFn& done);
 
  private:
@@ -65,15 +65,15 @@ class WorkbenchOrders {
    while nothing is open. */
   [[nodiscard]] Result<void> Post(ModelJob job);
   /** The rules of a model; they are found once. */
-  const simulation::OrderRules& RulesOf(const std::shared_ptr<const Model>& model,
-                                        const std::stop_token& stop);
-  void Keep(const std::shared_ptr<const Model>& model, const simulation::OrderRules& rules);
+  const orders::OrderRules& RulesOf(const std::shared_ptr<const Model>& model,
+                                    const std::stop_token& stop);
+  void Keep(const std::shared_ptr<const Model>& model, const orders::OrderRules& rules);
   void DoSet(const std::vector<product::OccurrenceId>& occurrences, const std::stop_token& stop);
 
   const Parts parts_;
   // Used by the worker alone.
   std::shared_ptr<const Model> model_;
-  simulation::OrderRules rules_;  ///< Rules of model_.
+  orders::OrderRules rules_;  ///< Rules of model_.
 };
 
 }  // namespace hvas::studio

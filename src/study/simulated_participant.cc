@@ -42,7 +42,7 @@ Result<std::unique_ptr<record::Recorder>> MakeTrialRecorder(const simulation::Mo
  */
 TrialResult AssembleInTrial(const TrialSetup& setup, assembly::Hand hand, double limit_s,
                             double reaction_s, session::SessionRecorder* sink) {
-  const simulation::SequenceStep& step = setup.model->sequence.steps[setup.step];
+  const sequence::SequenceStep& step = setup.model->sequence.steps[setup.step];
   TrialWatch watch(step.occurrence, step.extraction_W, setup.mating_window, hand.tick.dt, sink);
   assembly::AssemblySetup trial(setup.model, std::move(hand), &watch);
   if (sink != nullptr) {
@@ -85,8 +85,8 @@ Skill DrawSkill(int participant, std::uint64_t seed) {
   return skill;
 }
 
-simulation::PersonOptions MakePerson(const Skill& skill, Random* random) {
-  simulation::PersonOptions person;
+person::PersonOptions MakePerson(const Skill& skill, Random* random) {
+  person::PersonOptions person;
   const double speed = std::min(1.0, skill.speed * Vary(1, 0.1, random));
   person.carry_speed *= speed;
   person.approach_speed *= speed;
@@ -143,14 +143,14 @@ Result<std::size_t> FindPartStep(const simulation::Model& model, const std::stri
   }
   const auto& steps = model.sequence.steps;
   const auto found = std::find_if(steps.begin(), steps.end(), [&](const auto& step) {
-    return step.occurrence == *id && step.kind == simulation::SequenceStep::Kind::kInsert &&
+    return step.occurrence == *id && step.kind == sequence::SequenceStep::Kind::kInsert &&
            step.members.empty();
   });
   if (found == steps.end()) {
     return Fail(ErrorCode::kNotFound, "the assembly has no step that inserts this part by itself",
                 part, "name another part of the product");
   }
-  if (simulation::FindAside(model.sequence, *id) != nullptr) {
+  if (sequence::FindAside(model.sequence, *id) != nullptr) {
     return Fail(ErrorCode::kInvalid, "another part has to be moved aside to let this one pass",
                 part, "name another part of the product");
   }
@@ -202,7 +202,7 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
     return result;
   }
   const std::uint64_t person_seed = random.NextBits();  // Drawn before the habits, always.
-  const simulation::PersonOptions habits = MakePerson(skill, &random);
+  const person::PersonOptions habits = MakePerson(skill, &random);
   // The axis is picked before the part is taken.
   const double picking_time = picked > 0 ? DrawPickingTime(picked, skill, &random) : 0;
   assembly::Hand hand =
@@ -230,10 +230,9 @@ Result<TrialResult> RunSimulatedTrial(const TrialSetup& setup, const Condition& 
   return result;
 }
 
-Result<simulation::FitObserver> MakeObserver(
-    const Skill& skill, const Condition& condition,
-    const std::vector<simulation::PairSource>& alternatives, std::uint64_t seed) {
-  simulation::ObserverOptions options;
+Result<FitObserver> MakeObserver(const Skill& skill, const Condition& condition,
+                                 const std::vector<PairSource>& alternatives, std::uint64_t seed) {
+  ObserverOptions options;
   options.seed = seed;
   options.training = kObserverTraining;
   options.map = condition.force_map;
@@ -242,7 +241,7 @@ Result<simulation::FitObserver> MakeObserver(
   options.observer.threshold = skill.threshold;
   options.coupling_stiffness = condition.coupling;
   options.aim_error *= skill.aim;
-  return simulation::FitObserver::Train(options, alternatives);
+  return FitObserver::Train(options, alternatives);
 }
 
 }  // namespace hvas::study

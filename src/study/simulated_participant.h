@@ -8,10 +8,10 @@
 
 #include "base/random.h"
 #include "base/result.h"
+#include "person/simulated_person.h"
 #include "record/recorder.h"
-#include "simulation/identification.h"
 #include "simulation/model.h"
-#include "simulation/simulated_person.h"
+#include "study/identification.h"
 #include "study/protocol.h"
 #include "study/trial_result.h"
 
@@ -36,7 +36,7 @@ struct Skill {
 [[nodiscard]] Skill DrawSkill(int participant, std::uint64_t seed);
 
 /** Makes the simulated person for one trial: the skill, with variation from trial to trial. */
-[[nodiscard]] simulation::PersonOptions MakePerson(const Skill& skill, Random* random);
+[[nodiscard]] person::PersonOptions MakePerson(const Skill& skill, Random* random);
 
 /** Draws the time for setting constraints with the mouse by the keystroke-level model [s] (Card,
  Moran and Newell, CACM 23(7), 1980): H for the hand to the mouse; for each constraint M, P, K for
@@ -85,8 +85,8 @@ void ApplyCondition(const Condition& condition, haptics::TickOptions* tick);
 /** Makes the observer of this participant for blind identification.
  @param condition  Gives the force map and the coupling.
  @param alternatives  The pairs of each condition that can be the answer. */
-[[nodiscard]] Result<simulation::FitObserver> MakeObserver(
-    const Skill& skill, const Condition& condition,
-    const std::vector<simulation::PairSource>& alternatives, std::uint64_t seed);
+[[nodiscard]] Result<FitObserver> MakeObserver(const Skill& skill, const Condition& condition,
+                                               const std::vector<PairSource>& alternatives,
+                                               std::uint64_t seed);
 
 }  // namespace hvas::study

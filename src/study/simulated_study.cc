@@ -205,7 +205,7 @@ class Walk {
 
   Result<void> TrainObserver(std::size_t trial) {
     const Block& block = session_.BlockOf(trial);
-    std::vector<simulation::PairSource> alternatives;
+    std::vector<PairSource> alternatives;
     for (const std::size_t condition : block.conditions) {
       const TrialSetup& setup = setups_.Of(condition, true);
       alternatives.push_back(
@@ -255,7 +255,7 @@ class Walk {
   StudySession session_;
   Skill skill_;
   const Block* observed_block_{nullptr};
-  std::optional<simulation::FitObserver> observer_;
+  std::optional<FitObserver> observer_;
 };
 
 }  // namespace

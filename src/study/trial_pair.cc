@@ -11,7 +11,7 @@
 #include "fits/iso286.h"
 #include "mates/assignments.h"
 #include "mates/mate_kind.h"
-#include "simulation/fit_of_mate.h"
+#include "sequence/fit_of_mate.h"
 #include "study/schedule.h"
 #include "study/simulated_participant.h"
 
@@ -195,7 +195,7 @@ Result<std::shared_ptr<const simulation::Model>> DrawPair(const simulation::Mode
   const auto mate = FindFittedMate(*drawn, step);
   const auto& items = diagnostics.items();
   const auto missed = std::find_if(items.begin(), items.end(), [&](const Diagnostic& item) {
-    return item.code == simulation::kFitNotShown && mate &&
+    return item.code == sequence::kFitNotShown && mate &&
            item.entity == fmt::format("mate m{}", mate->value());
   });
   if (missed != items.end() && !condition.fit.empty()) {
@@ -217,19 +217,18 @@ std::optional<product::MateId> FindFittedMate(const simulation::Model& model, st
   return longest;
 }
 
-simulation::ShownPair FindShownPair(const simulation::Model& model, std::size_t step) {
+ShownPair FindShownPair(const simulation::Model& model, std::size_t step) {
   const std::size_t i = FindFittedMate(model, step)->index();
-  return {model.mates[i].fit, simulation::ToFitsKind(model.product->mates[i].fit->kind)};
+  return {model.mates[i].fit, sequence::ToFitsKind(model.product->mates[i].fit->kind)};
 }
 
-simulation::PairSource MakePairSource(std::shared_ptr<const simulation::Model> model,
-                                      std::size_t step, const Condition& condition) {
+PairSource MakePairSource(std::shared_ptr<const simulation::Model> model, std::size_t step,
+                          const Condition& condition) {
   const product::Mate& mate = model->product->mates[FindFittedMate(*model, step)->index()];
   return [model = std::move(model), &mate, pairs = condition.pairs](std::uint64_t seed) {
     Diagnostics ignored;
-    return simulation::ShownPair{
-        simulation::MakeFitForce(*model->product, mate, seed, pairs, &ignored),
-        simulation::ToFitsKind(mate.fit->kind)};
+    return ShownPair{sequence::MakeFitForce(*model->product, mate, seed, pairs, &ignored),
+                     sequence::ToFitsKind(mate.fit->kind)};
   };
 }
 

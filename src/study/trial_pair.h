@@ -7,8 +7,8 @@
 
 #include "base/result.h"
 #include "product/product.h"
-#include "simulation/identification.h"
 #include "simulation/model.h"
+#include "study/identification.h"
 #include "study/protocol.h"
 #include "study/trial_result.h"
 
@@ -44,11 +44,11 @@ namespace hvas::study {
                                                             std::size_t step);
 
 /** The pair of a step's part, for the observer. @pre FindFittedMate finds a mate. */
-[[nodiscard]] simulation::ShownPair FindShownPair(const simulation::Model& model, std::size_t step);
+[[nodiscard]] ShownPair FindShownPair(const simulation::Model& model, std::size_t step);
 
 /** Draws pairs as DrawPair does, for the observer's training. @pre FindFittedMate finds a mate. */
-[[nodiscard]] simulation::PairSource MakePairSource(std::shared_ptr<const simulation::Model> model,
-                                                    std::size_t step, const Condition& condition);
+[[nodiscard]] PairSource MakePairSource(std::shared_ptr<const simulation::Model> model,
+                                        std::size_t step, const Condition& condition);
 
 /** The pair of a step's part, for the results. Nothing where no mate of it has a fit. */
 [[nodiscard]] std::optional<TrialPair> DescribePair(const simulation::Model& model,

@@ -15,8 +15,8 @@ import sys
 from checkout import parse_root, report
 
 ROOMS = (
-    "assembly cad campaign contact dynamics evidence exchange haptics mates planning product session shopfloor simulation statics"
-    " studio sweep"
+    "assembly cad campaign contact dynamics evidence exchange haptics mates orders paths person product sequence session shopfloor"
+    " simulation statics studio"
 ).split()
 
 # Lists that have an entry for each part of a product, as they are called.

@@ -37,8 +37,8 @@ TICK_ONLY = """
 # Entry points in files that hold set-up code too, as regular expressions of whole demangled names.
 ROOTS = [
     r"hvas::simulation::HapticSide::Tick\(.*",
-    r"hvas::simulation::SimulatedPerson::Step\(.*",  # virtual: the operator of a headless run
-    r"hvas::simulation::SimulatedPerson::Intend\(.*",
+    r"hvas::person::SimulatedPerson::Step\(.*",  # virtual: the operator of a headless run
+    r"hvas::person::SimulatedPerson::Intend\(.*",
     r"hvas::simulation::DeviceOperator::(Step|Apply)\(.*",
     # Virtual: Device::Read and Device::Write of every driver.
     r"hvas::device::(\(anonymous namespace\)::)?\w+::(Read\(\)|Write\(hvas::spatial::Wrench const&\))",

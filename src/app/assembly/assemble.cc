@@ -82,7 +82,7 @@ void AddAssemble(CLI::App* app, int* status) {
                    "Parts to assemble first, by name, path or id (o12), separated by commas; the "
                    "others follow in the order that HVAS finds")
       ->delimiter(',');
-  AddBaseOption(command, &options->order.base);
+  AddOrderChoice(command, &options->order);
   command
       ->add_option("--plan", options->order.plan,
                    "A plan that hvas plan has written with -o: its order and its ways are followed")

@@ -32,6 +32,13 @@ std::size_t CountUntouched(const RunOutcome& outcome) {
                     [](const PartResult& part) { return part.is_seated && !part.has_touched; }));
 }
 
+/** Counts the parts that nothing brought to their place, and that were put there for the others. */
+std::size_t CountAssumed(const RunOutcome& outcome) {
+  return static_cast<std::size_t>(
+      std::count_if(outcome.parts.begin(), outcome.parts.end(),
+                    [](const PartResult& part) { return part.is_assumed; }));
+}
+
 /** Counts the parts in their place that had no way there but by an allowance. */
 std::size_t CountByAllowance(const RunOutcome& outcome) {
   return static_cast<std::size_t>(std::count_if(
@@ -68,20 +75,22 @@ nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance
 nlohmann::ordered_json ToJson(const Model& model, const PartResult& part) {
   nlohmann::ordered_json json{{"id", part.occurrence.value()},
                               {"name", PathOf(model, part.occurrence)},
-                              {"seated", part.is_seated}};
+                              {"seated", part.is_seated},
+                              {"is_assumed", part.is_assumed}};
   json.update(MakeHoldJson(part));
   const simulation::Passage& passage = part.passage;
   json.update(
       {{"beyond_drawn_um", units::ToUm(passage.depth)},
        {"beyond_drawn_in", passage.through.is_valid() ? PathOf(model, passage.through) : ""},
        {"insertion_mm", units::ToMm(part.insertion)},
+       {"needs_press", part.needs_press()},
        {"mates", part.mates},
        {"touched", part.has_touched},
        {"arrival_um", units::ToUm(part.arrival)},
        {"arrival_urad", 1e6 * part.arrival_angle},
        {"pose_error_um", units::ToUm(part.pose_error)},
        {"pose_error_urad", 1e6 * part.pose_error_angle}});
-  if (const auto* aside = simulation::FindAside(model.sequence, part.occurrence)) {
+  if (const auto* aside = sequence::FindAside(model.sequence, part.occurrence)) {
     json["moved_aside"] = MakeAsideJson(model, *aside);
   }
   json["allowances"] = nlohmann::ordered_json::array();
@@ -121,7 +130,8 @@ void PrintParts(const Model& model, const RunOutcome& outcome) {
     const std::string number = fmt::format("{:>3}", i + 1);
     const std::string name = PathOf(model, part.occurrence);
     if (!part.is_seated) {
-      table.Add({number, name}, "NOT IN PLACE: " + part.reason);
+      table.Add({number, name},
+                (part.is_assumed ? "ASSUMED IN PLACE: " : "NOT IN PLACE: ") + part.reason);
       continue;
     }
     table.Add({number, name, fmt::format("{:.2f}", part.time), fmt::format("{:.3f}", part.path),
@@ -144,11 +154,13 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report, const Le
   nlohmann::ordered_json json = MakeRunJson(model, report);
   json["seated"] = CountSeated(outcome);
   json["by_allowance"] = CountByAllowance(outcome);
+  json["assumed"] = CountAssumed(outcome);
+  json["not_tried"] = outcome.parts.size() - CountSeated(outcome) - CountAssumed(outcome);
   json["untouched"] = CountUntouched(outcome);
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
     json["parts"].push_back(ToJson(model, part));
-    if (const simulation::GapReason* reason = FindReason(left_out, part.occurrence)) {
+    if (const orders::GapReason* reason = FindReason(left_out, part.occurrence)) {
       json["parts"].back()["why"] = MakeGapReasonJson(model, *reason);
     }
   }
@@ -163,6 +175,8 @@ void PrintAssemblyTable(const Model& model, const SessionReport& report) {
   std::string apart = allowed > 0 ? fmt::format(", {} of them only by an allowance", allowed) : "";
   apart +=
       untouched > 0 ? fmt::format(", {} of them touching no part that was there", untouched) : "";
+  const std::size_t assumed = CountAssumed(outcome);
+  apart += assumed > 0 ? fmt::format("; {} assumed there, for the parts after them", assumed) : "";
   PrintRun(
       model, report,
       fmt::format("{} of {} parts in place{}", CountSeated(outcome), outcome.parts.size(), apart));

@@ -14,9 +14,9 @@ namespace hvas::app {
 namespace {
 
 using product::OccurrenceId;
+using sequence::Obstacle;
 using simulation::DisassemblyPlan;
 using simulation::Model;
-using simulation::Obstacle;
 using simulation::PartResult;
 using simulation::Removal;
 
@@ -24,7 +24,7 @@ using simulation::Removal;
 const Removal* FindRemoval(const DisassemblyPlan& plan, OccurrenceId id) {
   const auto moves = [id](const Removal& removal) {
     const auto& members = removal.step.members;
-    return removal.step.kind == simulation::SequenceStep::Kind::kRemove &&
+    return removal.step.kind == sequence::SequenceStep::Kind::kRemove &&
            (removal.step.occurrence == id ||
             std::find(members.begin(), members.end(), id) != members.end());
   };
@@ -33,11 +33,10 @@ const Removal* FindRemoval(const DisassemblyPlan& plan, OccurrenceId id) {
 }
 
 /** The move by which another part lets this one pass; null where none has to. */
-const simulation::SequenceStep* FindAsideOf(const DisassemblyPlan& plan, const Removal& removal) {
+const sequence::SequenceStep* FindAsideOf(const DisassemblyPlan& plan, const Removal& removal) {
   const auto number = &removal - plan.removals.data();
-  const simulation::SequenceStep* before = number > 0 ? &(&removal - 1)->step : nullptr;
-  const bool goes_aside =
-      before != nullptr && before->kind == simulation::SequenceStep::Kind::kAside;
+  const sequence::SequenceStep* before = number > 0 ? &(&removal - 1)->step : nullptr;
+  const bool goes_aside = before != nullptr && before->kind == sequence::SequenceStep::Kind::kAside;
   return goes_aside ? before : nullptr;
 }
 
@@ -139,7 +138,7 @@ void PrintDisassemblyTable(const Model& model, const DisassemblyPlan& plan,
                              PathOf(model, aside->occurrence), units::ToMm(aside->engage_distance));
     }
     const std::string gap = waiting.empty() || part.note.empty() ? "" : "; ";
-    table.Add({number, name, simulation::DescribeDirection(removal->step.extraction_W),
+    table.Add({number, name, sequence::DescribeDirection(removal->step.extraction_W),
                fmt::format("{:.1f}", units::ToMm(removal->way_length)),
                fmt::format("{:.1f}", removal->breakaway), fmt::format("{:.1f}", part.fit_true),
                fmt::format("{:.1f}", part.peak_true), fmt::format("{:.2f}", part.peak_felt),

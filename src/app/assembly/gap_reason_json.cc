@@ -6,10 +6,10 @@
 namespace hvas::app {
 namespace {
 
-using simulation::GapChange;
-using simulation::GapChangeKind;
-using simulation::GapReason;
-using simulation::MetFaces;
+using orders::GapChange;
+using orders::GapChangeKind;
+using orders::GapReason;
+using sequence::MetFaces;
 using simulation::Model;
 
 nlohmann::ordered_json ListElements(const Vec3& direction_W) {
@@ -17,7 +17,7 @@ nlohmann::ordered_json ListElements(const Vec3& direction_W) {
   return nlohmann::ordered_json::array({plain_W.x(), plain_W.y(), plain_W.z()});
 }
 
-nlohmann::ordered_json ListPaths(const Model& model, const simulation::Unit& unit) {
+nlohmann::ordered_json ListPaths(const Model& model, const sequence::Unit& unit) {
   auto paths = nlohmann::ordered_json::array();
   for (const product::OccurrenceId id : unit) {
     paths.push_back(PathOf(model, id));
@@ -32,7 +32,7 @@ nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason, const
     if (index != contact::kNoFace) {  // Deep inside, contact does not know the face.
       json_face["index"] = index;
     }
-    json_face["text"] = simulation::DescribeFace(*model.product, id, index);
+    json_face["text"] = orders::DescribeFace(*model.product, id, index);
     return json_face;
   };
   json["face"] = face(reason.occurrence, stop.own_face);
@@ -47,7 +47,7 @@ nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason, const
 
 nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason,
                               const GapChange& change) {
-  nlohmann::ordered_json json{{"kind", simulation::NameOf(change.kind)},
+  nlohmann::ordered_json json{{"kind", orders::NameOf(change.kind)},
                               {"parts", ListPaths(model, change.parts)},
                               {"works", change.has_worked}};
   if (change.kind == GapChangeKind::kClearance) {
@@ -68,7 +68,7 @@ nlohmann::ordered_json ToJson(const Model& model, const GapReason& reason,
     json["turns"] = change.does_turn;
     json["gives"] = change.does_give;
   }
-  json["text"] = simulation::DescribeGapChange(model, reason, change);
+  json["text"] = orders::DescribeGapChange(model, reason, change);
   return json;
 }
 
@@ -92,9 +92,9 @@ nlohmann::ordered_json MakeGapReasonJson(const Model& model, const GapReason& re
       json["best_way"]["mates"].push_back(mate.value());
     }
   }
-  json["proof"] = {{"kind", simulation::NameOf(reason.proof)},
-                   {"is_proven", reason.proof != simulation::GapProof::kNotFound}};
-  if (reason.proof == simulation::GapProof::kCaged) {
+  json["proof"] = {{"kind", orders::NameOf(reason.proof)},
+                   {"is_proven", reason.proof != orders::GapProof::kNotFound}};
+  if (reason.proof == orders::GapProof::kCaged) {
     json["proof"]["ball_diameter_mm"] = 2 * units::ToMm(reason.caged_radius);
   }
   json["changes"] = nlohmann::ordered_json::array();
@@ -104,7 +104,7 @@ nlohmann::ordered_json MakeGapReasonJson(const Model& model, const GapReason& re
   json["looks"] = reason.looks;
   json["is_limit_reached"] = reason.is_limit_reached;
   json["is_stopped"] = reason.is_stopped;
-  json["text"] = simulation::FormatGapReason(model, reason);
+  json["text"] = orders::FormatGapReason(model, reason);
   return json;
 }
 

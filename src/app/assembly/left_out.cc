@@ -13,13 +13,13 @@
 namespace hvas::app {
 namespace {
 
-using simulation::GapReason;
-using simulation::SequenceGap;
+using orders::GapReason;
+using sequence::SequenceGap;
 
 /** Why a part is left out, in sentences. */
 std::vector<std::string> ListLines(const LeftOut& left_out, const SequenceGap& gap) {
   const GapReason* reason = FindReason(left_out, gap.occurrence);
-  return reason != nullptr ? simulation::FormatGapReason(*left_out.model, *reason)
+  return reason != nullptr ? orders::FormatGapReason(*left_out.model, *reason)
                            : std::vector<std::string>{
                                  "it was not looked into: the looks at others took all the time, "
                                  "or it is one too many"};

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 #include "simulation/model.h"
 
 namespace hvas::app {
@@ -12,12 +12,12 @@ namespace hvas::app {
  first of the model's gaps; the others have their sentence only, and say so. */
 struct LeftOut {
   const simulation::Model* model{nullptr};
-  const std::vector<simulation::GapReason>* reasons{nullptr};
+  const std::vector<orders::GapReason>* reasons{nullptr};
 };
 
 /** The reason of a part; null where it was not looked into. */
-[[nodiscard]] const simulation::GapReason* FindReason(const LeftOut& left_out,
-                                                      product::OccurrenceId id);
+[[nodiscard]] const orders::GapReason* FindReason(const LeftOut& left_out,
+                                                  product::OccurrenceId id);
 
 /** Prints the parts that have no way in, with their reasons in sentences. */
 void PrintLeftOut(const LeftOut& left_out);

@@ -30,11 +30,11 @@
 #include "base/csv_row.h"
 #include "base/units.h"
 #include "mates/assignments.h"
+#include "paths/stl.h"
+#include "paths/swept_volume.h"
 #include "product/wall.h"
 #include "simulation/shapes.h"
 #include "studio/paths.h"
-#include "sweep/stl.h"
-#include "sweep/swept_volume.h"
 
 namespace hvas::app {
 namespace {
@@ -98,11 +98,11 @@ Result<TimedPath> FindPath(const PathOptions& options, const Product& product,
   const spatial::Pose& X_WB = occurrence.X_WB;
   if (!options.translate_mm.empty()) {
     return TimedPath{
-        sweep::MakeTranslation(X_WB, units::FromMm(1) * VectorOf(options.translate_mm)), {}};
+        paths::MakeTranslation(X_WB, units::FromMm(1) * VectorOf(options.translate_mm)), {}};
   }
   const Vec3 p_WQ = options.about_mm.empty() ? X_WB * product.part_of(occurrence.id).mass.p_BoBcm_B
                                              : Vec3(units::FromMm(1) * VectorOf(options.about_mm));
-  return TimedPath{sweep::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate_deg).normalized(),
+  return TimedPath{paths::MakeRotation(X_WB, p_WQ, VectorOf(options.rotate_deg).normalized(),
                                        units::FromDeg(options.rotate_deg[3])),
                    {}};
 }
@@ -112,9 +112,9 @@ void FillIn(const product::Part& part, TimedPath* path) {
   // A path looks smooth with so many steps: a choice, not measured.
   constexpr double kSteps = 100;
   if (path->t_ns.empty()) {
-    const double length = sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B);
+    const double length = paths::CalcLength(path->X_WB, part.mass.p_BoBcm_B);
     const double step = std::max(length, part.box_B.size().norm()) / kSteps;
-    path->X_WB = sweep::Resample(path->X_WB, part.box_B, step);
+    path->X_WB = paths::Resample(path->X_WB, part.box_B, step);
   }
 }
 
@@ -157,10 +157,10 @@ Json MakeJson(const TimedPath& path, const Occurrence& occurrence, const Vec3& p
   return json;
 }
 
-Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& product,
-                                     const Occurrence& occurrence, const sweep::Path& path,
+Result<paths::SweptVolume> SweepPart(const PathOptions& options, const Product& product,
+                                     const Occurrence& occurrence, const paths::Path& path,
                                      std::optional<double> thinnest_wall) {
-  sweep::SweepOptions sweeping;
+  paths::SweepOptions sweeping;
   sweeping.resolution = units::FromMm(options.resolution_mm);
   sweeping.thinnest_wall = thinnest_wall.value_or(0);
   sweeping.stop = CommandWatch::Get().stop();
@@ -169,7 +169,7 @@ Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& 
     sweeping.progress = [](double fraction) { ShowProgress("sweep", fraction); };
   }
   auto swept =
-      sweep::Sweep(simulation::MakeShapeSource(product.part_of(occurrence.id)), path, sweeping);
+      paths::Sweep(simulation::MakeShapeSource(product.part_of(occurrence.id)), path, sweeping);
   if (swept) {
     return swept;
   }
@@ -179,15 +179,15 @@ Result<sweep::SweptVolume> SweepPart(const PathOptions& options, const Product& 
 }
 
 Result<void> WriteSwept(const PathOptions& options, const Occurrence& occurrence,
-                        const sweep::SweptVolume& swept) {
+                        const paths::SweptVolume& swept) {
   if (options.output.extension() == ".stl") {
-    return WriteAtomically(options.output, sweep::MakeStl(swept.mesh));
+    return WriteAtomically(options.output, paths::MakeStl(swept.mesh));
   }
   const auto glb = studio::MakeGlb(swept.mesh, occurrence.name);
   return glb ? WriteAtomically(options.output, *glb) : Unexpected(glb.error());
 }
 
-Json DescribeSwept(const sweep::SweptVolume& swept) {
+Json DescribeSwept(const paths::SweptVolume& swept) {
   spatial::Box box_W;
   for (const Vec3& vertex : swept.mesh.vertices) {
     box_W.Add(vertex);
@@ -284,7 +284,7 @@ Result<void> WritePath(const PathOptions& options) {
   FillIn(part, &*path);
   Json summary{{"occurrence", occurrence.path},
                {"poses", path->X_WB.size()},
-               {"length_mm", units::ToMm(sweep::CalcLength(path->X_WB, part.mass.p_BoBcm_B))},
+               {"length_mm", units::ToMm(paths::CalcLength(path->X_WB, part.mass.p_BoBcm_B))},
                {"output", options.output.string()}};
   if (options.has_clearances) {
     const auto others = FindOthers(options, *product, *path);

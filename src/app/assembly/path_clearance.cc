@@ -12,8 +12,8 @@
 #include "assembly/prepare_model.h"
 #include "base/crash_note.h"
 #include "base/units.h"
+#include "paths/clearance.h"
 #include "simulation/shapes.h"
-#include "sweep/clearance.h"
 
 namespace hvas::app {
 namespace {
@@ -38,7 +38,7 @@ bool HasMate(const Product& product, OccurrenceId a, OccurrenceId b) {
 }  // namespace
 
 Result<Json> DescribeClearances(const LoadOptions& load, const Product& product, OccurrenceId id,
-                                const sweep::Path& path,
+                                const paths::Path& path,
                                 const std::map<OccurrenceId, spatial::Pose>& others) {
   const bool is_watched = !load.is_quiet && IsWatched();
   const auto cache = assembly::MakeShapeCache(CacheDirectory(load));
@@ -57,7 +57,7 @@ Result<Json> DescribeClearances(const LoadOptions& load, const Product& product,
     return (*shapes)[product.occurrences[of.index()].part.index()].get();
   };
   std::vector<OccurrenceId> ids;
-  std::vector<sweep::Neighbour> neighbours;
+  std::vector<paths::Neighbour> neighbours;
   for (const auto& [other, X_WN] : others) {
     if (other != id) {
       ids.push_back(other);
@@ -65,26 +65,26 @@ Result<Json> DescribeClearances(const LoadOptions& load, const Product& product,
     }
   }
   const contact::Shape& shape = *shape_of(id);
-  const sweep::Path fine = sweep::Resample(path, shape.box_B(), kStep);
-  sweep::ClearanceOptions options;
+  const paths::Path fine = paths::Resample(path, shape.box_B(), kStep);
+  paths::ClearanceOptions options;
   NoteStage("clearances");
   options.stop = CommandWatch::Get().stop();
   if (is_watched) {
     options.progress = [](double fraction) { ShowProgress("clearances", fraction); };
   }
-  const auto found = sweep::CalcClearances(shape, fine, neighbours, options);
+  const auto found = paths::CalcClearances(shape, fine, neighbours, options);
   if (!found) {
     return Unexpected(found.error());
   }
   Json list = Json::array();
-  for (const sweep::Clearance& clearance : *found) {
+  for (const paths::Clearance& clearance : *found) {
     const OccurrenceId other = ids[clearance.neighbour];
-    const sweep::Path until(fine.begin(),
+    const paths::Path until(fine.begin(),
                             fine.begin() + static_cast<std::ptrdiff_t>(clearance.pose) + 1);
     const Vec3& p_BoBcm_B = product.part_of(id).mass.p_BoBcm_B;
     list.push_back({{"occurrence", product.occurrences[other.index()].path},
                     {"clearance_mm", units::ToMm(clearance.distance)},
-                    {"way_mm", units::ToMm(sweep::CalcLength(until, p_BoBcm_B))},
+                    {"way_mm", units::ToMm(paths::CalcLength(until, p_BoBcm_B))},
                     {"place_mm", PointMm(clearance.p_WC)},
                     {"has_mate", HasMate(product, id, other)}});
   }

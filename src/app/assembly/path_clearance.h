@@ -6,8 +6,8 @@
 
 #include "app/product/load_product.h"
 #include "base/result.h"
+#include "paths/path.h"
 #include "product/product.h"
-#include "sweep/path.h"
 
 namespace hvas::app {
 
@@ -17,7 +17,7 @@ namespace hvas::app {
  Errors: those of simulation::BuildShapes. */
 [[nodiscard]] Result<nlohmann::ordered_json> DescribeClearances(
     const LoadOptions& load, const product::Product& product, product::OccurrenceId id,
-    const sweep::Path& path, const std::map<product::OccurrenceId, spatial::Pose>& others);
+    const paths::Path& path, const std::map<product::OccurrenceId, spatial::Pose>& others);
 
 /** Prints what DescribeClearances() gives as a table. */
 void PrintClearances(const nlohmann::ordered_json& described);

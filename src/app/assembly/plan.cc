@@ -71,7 +71,7 @@ void AddPlan(CLI::App* app, int* status) {
   const auto options = std::make_shared<PlanCommandOptions>();
   command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
       ->required();
-  AddBaseOption(command, &options->order.base);
+  AddOrderChoice(command, &options->order);
   AddOrderOptions(command, options.get());
   command
       ->add_option("--orders", options->plan.most_orders, "How many of the best orders are given")

@@ -9,8 +9,8 @@
 
 #include "base/parse_json.h"
 #include "base/regular_file.h"
+#include "sequence/step_check.h"
 #include "session/command_json.h"
-#include "simulation/step_check.h"
 
 namespace hvas::app {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 // 500 parts with ways of 1,000 poses each have a tenth of this.
 constexpr std::size_t kLargestPlan = 1'000'000'000;
 
-using simulation::SequenceStep;
+using sequence::SequenceStep;
 
 /** A step without signs of zeros, which people would wonder at. */
 SequenceStep WithoutSignedZeros(SequenceStep step) {
@@ -35,7 +35,7 @@ SequenceStep WithoutSignedZeros(SequenceStep step) {
 }  // namespace
 
 nlohmann::ordered_json MakeFollowedPlan(const product::Product& product,
-                                        const std::vector<simulation::SequenceStep>& steps) {
+                                        const std::vector<sequence::SequenceStep>& steps) {
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
   for (const product::Occurrence& occurrence : product.occurrences) {
     parts.push_back(occurrence.path);
@@ -45,8 +45,8 @@ nlohmann::ordered_json MakeFollowedPlan(const product::Product& product,
   return {{"parts", std::move(parts)}, {"steps", session::MakeStepsJson(plain)}};
 }
 
-Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::path& file,
-                                                       const product::Product& product) {
+Result<std::vector<sequence::SequenceStep>> ReadPlan(const std::filesystem::path& file,
+                                                     const product::Product& product) {
   const auto text = ReadRegularFile(file, kLargestPlan);
   if (!text) {
     return Unexpected(text.error());
@@ -73,7 +73,7 @@ Result<std::vector<simulation::SequenceStep>> ReadPlan(const std::filesystem::pa
   if (!steps) {
     return Fail(steps.error().code, steps.error().message, file.string(), kRemedy);
   }
-  if (const auto checked = simulation::CheckSteps(*steps, parts.size()); !checked) {
+  if (const auto checked = sequence::CheckSteps(*steps, parts.size()); !checked) {
     return Fail(checked.error().code, checked.error().message, file.string(), kRemedy);
   }
   return steps;

@@ -20,15 +20,15 @@ namespace hvas::app {
 namespace {
 
 using assembly::BestOrder;
+using orders::FoundOrder;
+using orders::FreeMove;
+using orders::OrderCounts;
 using pages::Escape;
 using pages::MakeTile;
 using product::OccurrenceId;
 using shopfloor::ArrowReason;
 using shopfloor::ListArrows;
 using shopfloor::OrderArrow;
-using simulation::FoundOrder;
-using simulation::FreeMove;
-using simulation::OrderCounts;
 
 std::string DescribeReason(const PlanReport& report, const OrderArrow& arrow) {
   const auto other = [&] { return PathOf(*report.model, arrow.other); };
@@ -101,12 +101,12 @@ std::optional<std::vector<OccurrenceId>> HoldsAfter(const assembly::OrderPlan& p
 nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
   const assembly::OrderPlan& plan = *report.plan;
   const FoundOrder& best = BestOrder(plan);
-  const std::vector<simulation::HandWork> work = simulation::ListHandWork(plan.rules, best);
+  const std::vector<orders::HandWork> work = orders::ListHandWork(plan.rules, best);
   nlohmann::ordered_json moves = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const std::size_t m = best.moves[i];
     const FreeMove& move = plan.rules.moves[m];
-    const simulation::SequenceStep& step = move.ways[best.ways[i]].step;
+    const sequence::SequenceStep& step = move.ways[best.ways[i]].step;
     const Vec3 direction = step.extraction_W + Vec3::Zero();  // A zero has no sign for people.
     nlohmann::ordered_json json{{"id", step.occurrence.value()},
                                 {"name", PathOf(*report.model, step.occurrence)},
@@ -118,13 +118,13 @@ nlohmann::ordered_json MakeMovesJson(const PlanReport& report) {
                                 {"reach_mm", units::ToMm(work[i].reach)},
                                 {"force_n", work[i].force},
                                 {"fits_n", work[i].press},
-                                {"hand_time_s", simulation::kModSeconds * work[i].mods}};
+                                {"hand_time_s", orders::kModSeconds * work[i].mods}};
     if (move.aside) {
       json["moved_aside"] = MakeAsideJson(*report.model, *move.aside);
     }
     if (!move.tool.empty()) {
       json["tool"] = move.tool;
-      json["in_tool_space"] = MakeIds(simulation::ListInToolSpace(plan.rules, best, i));
+      json["in_tool_space"] = MakeIds(orders::ListInToolSpace(plan.rules, best, i));
     }
     if (!plan.statics.empty()) {
       const Vec3 up_W = plan.statics.front().up_W[i] + Vec3::Zero();
@@ -183,8 +183,8 @@ std::string DescribeFixture(const PlanReport& report) {
                                                units::ToDeg(plan.standing_margin))
                                  : "it does not stand by itself, and has to be held";
   return fmt::format("Fixture: {} with {} upwards; {}.",
-                     PathOf(*report.model, simulation::FindBase(report.model->sequence)),
-                     simulation::DescribeDirection(plan.statics.front().up_W.front()), margin);
+                     PathOf(*report.model, sequence::FindBase(report.model->sequence)),
+                     sequence::DescribeDirection(plan.statics.front().up_W.front()), margin);
 }
 
 /** The side that is upwards from a move of the best order on, where the product is turned for it;
@@ -194,7 +194,7 @@ std::string DescribeTurn(const assembly::OrderPlan& plan, std::size_t place) {
     return {};
   }
   const std::vector<Vec3>& ups = plan.statics.front().up_W;
-  return ups[place] != ups[place - 1] ? simulation::DescribeDirection(ups[place]) : "";
+  return ups[place] != ups[place - 1] ? sequence::DescribeDirection(ups[place]) : "";
 }
 
 std::string DescribeHolds(const assembly::OrderPlan& plan, std::size_t order) {
@@ -233,11 +233,11 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
   std::vector<MoveRow> rows;
   for (std::size_t i = 0; i < best.moves.size(); ++i) {
     const std::size_t m = best.moves[i];
-    const simulation::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
+    const sequence::SequenceStep& step = plan.rules.moves[m].ways[best.ways[i]].step;
     MoveRow& row = rows.emplace_back();
     row.part = PathOf(model, step.occurrence);
     row.part += step.members.empty() ? "" : fmt::format(" and {} more", step.members.size());
-    row.way = step.way.empty() ? simulation::DescribeDirection(step.extraction_W) : "turns";
+    row.way = step.way.empty() ? sequence::DescribeDirection(step.extraction_W) : "turns";
     if (const auto& aside = plan.rules.moves[m].aside) {
       row.aside =
           fmt::format("{} {} aside by {:.1f} mm", PathOf(model, aside->occurrence),
@@ -245,7 +245,7 @@ std::vector<MoveRow> ListRows(const PlanReport& report) {
     }
     row.tool = plan.rules.moves[m].tool;
     row.turned = DescribeTurn(plan, i);
-    const auto in_tool_space = simulation::ListInToolSpace(plan.rules, best, i);
+    const auto in_tool_space = orders::ListInToolSpace(plan.rules, best, i);
     if (!in_tool_space.empty()) {
       row.in_tool_space =
           fmt::format("no room for a {} beside {}", plan.rules.moves[m].tool_of_space,
@@ -272,7 +272,7 @@ std::string MakeOrderTable(const PlanReport& report) {
   html += fmt::format(
       "<tr><td>0</td><td class=\"l\">{}</td><td "
       "class=\"l\">base</td><td></td><td></td><td></td></tr>\n",
-      Escape(PathOf(*report.model, simulation::FindBase(report.model->sequence))));
+      Escape(PathOf(*report.model, sequence::FindBase(report.model->sequence))));
   int number = 0;
   for (const MoveRow& row : ListRows(report)) {
     std::string before;
@@ -332,7 +332,7 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                               {"seed", model.seed},
                               {"preparation_s", report.preparation_s},
                               {"planning_s", report.planning_s},
-                              {"base", PathOf(model, simulation::FindBase(model.sequence))},
+                              {"base", PathOf(model, sequence::FindBase(model.sequence))},
                               {"moves", MakeMovesJson(report)},
                               {"arrows", MakeArrowsJson(report)},
                               {"weights",
@@ -356,7 +356,7 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
                     {"width", plan.search.width},
                     {"ended_early", plan.search.is_ended_early}};
   json["left_out"] = nlohmann::ordered_json::array();
-  for (const simulation::SequenceGap& gap : model.sequence.gaps) {
+  for (const sequence::SequenceGap& gap : model.sequence.gaps) {
     json["left_out"].push_back({{"id", gap.occurrence.value()},
                                 {"name", PathOf(model, gap.occurrence)},
                                 {"reason", gap.reason}});
@@ -365,7 +365,7 @@ nlohmann::ordered_json MakePlanJson(const PlanReport& report) {
     }
   }
   json["followed"] =
-      MakeFollowedPlan(*model.product, simulation::ListSteps(plan.rules, BestOrder(plan)));
+      MakeFollowedPlan(*model.product, orders::ListSteps(plan.rules, BestOrder(plan)));
   return json;
 }
 
@@ -398,7 +398,7 @@ void PrintPlanTable(const PlanReport& report) {
   const simulation::Model& model = *report.model;
   const assembly::OrderPlan& plan = *report.plan;
   TextTable table({"  #", "part", "way", "tool"}, 2);
-  table.Add({"  0", PathOf(model, simulation::FindBase(model.sequence)), "base", ""});
+  table.Add({"  0", PathOf(model, sequence::FindBase(model.sequence)), "base", ""});
   int number = 0;
   for (const MoveRow& row : ListRows(report)) {
     table.Add({fmt::format("{:3}", ++number), row.part, row.way, row.tool},

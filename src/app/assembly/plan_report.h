@@ -13,7 +13,7 @@ namespace hvas::app {
 struct PlanReport {
   const simulation::Model* model{nullptr};
   const assembly::OrderPlan* plan{nullptr};
-  simulation::OrderWeights weights;
+  orders::OrderWeights weights;
   double preparation_s{0};
   double planning_s{0};
 };

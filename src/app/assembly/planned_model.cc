@@ -16,7 +16,7 @@ namespace {
 Result<void> KeepModelsOrder(const simulation::Model& model, const assembly::PlanOptions& options,
                              assembly::OrderPlan* plan) {
   std::vector<product::OccurrenceId> parts;
-  for (const simulation::FreeMove& move : plan->rules.moves) {
+  for (const orders::FreeMove& move : plan->rules.moves) {
     parts.push_back(move.parts.front());
   }
   auto checked = assembly::CheckOrder(model, plan->rules, parts, options);
@@ -90,7 +90,7 @@ void AddOrderOptions(CLI::App* command, PlanCommandOptions* options) {
                    "Two parts: the first has to come before the second. May be given repeatedly")
       ->type_size(2)
       ->expected(1, CLI::detail::expected_max_vector_size);
-  simulation::OrderWeights& weights = options->plan.weights;
+  orders::OrderWeights& weights = options->plan.weights;
   command->add_option("--turn-cost", weights.turn, "Cost of turning the product")
       ->check(NotNegative())
       ->capture_default_str();

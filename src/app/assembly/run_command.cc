@@ -51,12 +51,15 @@ Result<std::shared_ptr<const Model>> MakeModel(const RunCommandOptions& options,
   if (!product) {
     return Unexpected(product.error());
   }
-  progress->parts = product->occurrences.size();
+  for (const product::Occurrence& occurrence : product->occurrences) {
+    progress->parts.push_back(occurrence.path);
+  }
   assembly::PrepareOptions prepare;
   prepare.seed = options.run.seed;
   prepare.pairs = options.pairs;
   prepare.first_parts = order.first_parts;
   prepare.base = order.base;
+  prepare.is_thorough = order.is_thorough;
   if (!order.plan.empty()) {
     auto steps = ReadPlan(order.plan, *product);
     if (!steps) {
@@ -144,8 +147,12 @@ int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress
         {"stage", progress.stage},
         {"stage_fraction", progress.fraction},
         {"preparation_s", 1e-9 * static_cast<double>(MonotonicNs() - progress.start_ns)}};
-    if (progress.parts) {
-      json["parts"] = *progress.parts;
+    json["parts"] = nlohmann::ordered_json::array();
+    for (const std::string& name : progress.parts) {
+      json["parts"].push_back({{"name", name},
+                               {"seated", false},
+                               {"is_assumed", false},
+                               {"reason", "the preparation ended before its turn"}});
     }
     PrintJson(json);
   }
@@ -196,8 +203,8 @@ void AddReasonsOption(CLI::App* command, double* reasons_s) {
       ->capture_default_str();
 }
 
-std::vector<simulation::GapReason> ExplainLeftOut(const Model& model, double time_s, bool is_quiet,
-                                                  const std::stop_token& stop) {
+std::vector<orders::GapReason> ExplainLeftOut(const Model& model, double time_s, bool is_quiet,
+                                              const std::stop_token& stop) {
   if (model.sequence.gaps.empty() || time_s == 0) {
     return {};
   }
@@ -217,8 +224,11 @@ std::vector<simulation::GapReason> ExplainLeftOut(const Model& model, double tim
   return reasons;
 }
 
-void AddBaseOption(CLI::App* command, std::string* base) {
-  command->add_option("--base", *base,
+void AddOrderChoice(CLI::App* command, OrderChoice* order) {
+  command->add_flag("--thorough", order->is_thorough,
+                    "Search ten times as long for ways out where parts do not come out straight, "
+                    "minutes instead of half a minute for a product");
+  command->add_option("--base", order->base,
                       "The part that stays in the fixture, by name, path or id (o12); without it, "
                       "the largest part, or the one that most others are joined to");
 }
@@ -235,15 +245,20 @@ void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options) {
   AddConditionOption(command, &options->run.condition);
   AddForceMapOption(command, &options->run.force_map);
   AddGuidanceOptions(command, &options->run.guidance);
-  Choices<simulation::PersonKind> persons;
-  for (const auto kind : {simulation::PersonKind::kCareful, simulation::PersonKind::kHasty,
-                          simulation::PersonKind::kStiff}) {
-    persons.emplace_back(simulation::ToString(kind), kind);
+  Choices<person::PersonKind> persons;
+  for (const auto kind :
+       {person::PersonKind::kCareful, person::PersonKind::kHasty, person::PersonKind::kStiff}) {
+    persons.emplace_back(person::ToString(kind), kind);
   }
+  AddChoice(command, "--operator", &options->run.person,
+            Choices<std::optional<person::PersonKind>>{{"guided", std::nullopt},
+                                                       {"person", person::PersonKind::kCareful}},
+            "What moves the parts without a device: a guided hand, which follows the planned ways, "
+            "so that the result hangs on the product alone; or a simulated person, who aims, feels "
+            "and searches; default: guided");
   AddChoice(command, "--person", &options->run.person, persons,
-            "How a simulated person without a device works: careful; hasty, three times as fast "
-            "and with all its "
-            "force at once; or stiff; both give way to nothing");
+            "How a simulated person works, who then moves the parts: careful; hasty, three times "
+            "as fast and with all its force at once; or stiff; both give way to nothing");
   command->add_option(
       "--device", options->device,
       "Address of the device for the hand (`hvas devices` lists them); emulated:DRIVER[:PROFILE] "

@@ -12,7 +12,7 @@
 #include "app/product/load_product.h"
 #include "assembly/run_assembly.h"
 #include "base/result.h"
-#include "simulation/gap_reason.h"
+#include "orders/gap_reason.h"
 #include "simulation/model.h"
 
 namespace CLI {
@@ -35,9 +35,9 @@ void AddReasonsOption(CLI::App* command, double* reasons_s);
 
 /** Explains why parts of a model have no way in, with progress.
  @param time_s  For all of them [s]; 0: none is looked into. */
-[[nodiscard]] std::vector<simulation::GapReason> ExplainLeftOut(const simulation::Model& model,
-                                                                double time_s, bool is_quiet,
-                                                                const std::stop_token& stop);
+[[nodiscard]] std::vector<orders::GapReason> ExplainLeftOut(const simulation::Model& model,
+                                                            double time_s, bool is_quiet,
+                                                            const std::stop_token& stop);
 
 /** Words in which the progress of a run is told. */
 struct TurnWords {
@@ -49,16 +49,17 @@ struct TurnWords {
 
 /** How far a preparation has come. */
 struct PreparationProgress {
-  std::int64_t start_ns{0};          ///< When it began, on the monotonic clock.
-  std::string stage;                 ///< The last one that was reported; empty: none was.
-  double fraction{0};                ///< The share of this stage that is done, from 0 to 1.
-  std::optional<std::size_t> parts;  ///< Occurrences of the product, once it is read.
+  std::int64_t start_ns{0};        ///< When it began, on the monotonic clock.
+  std::string stage;               ///< The last one that was reported; empty: none was.
+  double fraction{0};              ///< The share of this stage that is done, from 0 to 1.
+  std::vector<std::string> parts;  ///< Paths of the occurrences, once the product is read.
 };
 
 /** What the user wishes of the order of assembly. */
 struct OrderChoice {
   std::vector<std::string> first_parts;  ///< PrepareOptions::first_parts.
   std::string base;                      ///< PrepareOptions::base.
+  bool is_thorough{false};               ///< PrepareOptions::is_thorough.
   std::filesystem::path plan;            ///< A plan of `hvas plan`; empty: none.
 };
 
@@ -86,8 +87,8 @@ int ReportUnprepared(const RunCommandOptions& options, const PreparationProgress
                                               assembly::RunOutcome outcome,
                                               std::int64_t preparation_ns);
 
-/** Adds --base to a command. */
-void AddBaseOption(CLI::App* command, std::string* base);
+/** Adds --base and --thorough to a command. */
+void AddOrderChoice(CLI::App* command, OrderChoice* order);
 
 /** Adds --seed, --fit, --condition, --force-map and --device to a command. */
 void AddFitAndDeviceOptions(CLI::App* command, RunCommandOptions* options);

@@ -110,7 +110,7 @@ const std::string& PathOf(const Model& model, product::OccurrenceId id) {
   return id.is_valid() ? model.product->occurrences[id.index()].path : kNone;
 }
 
-nlohmann::ordered_json MakeAsideJson(const Model& model, const simulation::SequenceStep& aside) {
+nlohmann::ordered_json MakeAsideJson(const Model& model, const sequence::SequenceStep& aside) {
   const Vec3 way_W = Vec3::Zero() - aside.extraction_W;  // A zero has no sign for people.
   return {{"id", aside.occurrence.value()},
           {"name", PathOf(model, aside.occurrence)},

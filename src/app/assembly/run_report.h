@@ -34,7 +34,7 @@ struct SessionReport {
 /** The part that is moved aside to let another one pass, which way and how far.
  @param aside  As FindAside() gives it. */
 [[nodiscard]] nlohmann::ordered_json MakeAsideJson(const simulation::Model& model,
-                                                   const simulation::SequenceStep& aside);
+                                                   const sequence::SequenceStep& aside);
 
 /** How a part fared in the hands: reason, time and forces. */
 [[nodiscard]] nlohmann::ordered_json MakeHoldJson(const simulation::PartResult& part);

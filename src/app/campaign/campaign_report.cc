@@ -62,7 +62,7 @@ Json MakeCellJson(const campaign::Plan& plan, const CellSummary& cell) {
             {"fits", plan.fits[cell.cell.fit].id},
             {"sizes", plan.sizes[cell.cell.sizes].id},
             {"materials", plan.materials[cell.cell.material].id},
-            {"person", simulation::ToString(plan.persons[cell.cell.person])},
+            {"person", campaign::Plan::NamePerson(plan.persons[cell.cell.person])},
             {"runs", cell.runs},
             {"complete", cell.complete},
             {"yield", cell.yield->share},

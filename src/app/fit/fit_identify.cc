@@ -15,17 +15,17 @@
 #include "app/output/report_failure.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
-#include "simulation/identification.h"
+#include "study/identification.h"
 
 namespace hvas::app {
 namespace {
 
-using simulation::Identification;
-using simulation::IdentificationOptions;
-using simulation::kPaperRight;
-using simulation::kPaperTrials;
-using simulation::kShownFitNames;
-using simulation::kShownFits;
+using study::IdentificationOptions;
+using study::kPaperRight;
+using study::kPaperTrials;
+using study::kShownFitNames;
+using study::kShownFits;
+using study::ObserverResult;
 
 constexpr const char* kWhat =
     "simulated: an observer with published thresholds of force, not people";
@@ -34,7 +34,7 @@ double CalcPaperShare(std::size_t fit) {
   return static_cast<double>(kPaperRight[fit]) / kPaperTrials;
 }
 
-nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identification& result) {
+nlohmann::ordered_json ToJson(const IdentificationOptions& options, const ObserverResult& result) {
   nlohmann::ordered_json json{{"schema", "hvas-fit-identify-1"},
                               {"what", kWhat},
                               {"force_map", haptics::ToString(options.map)},
@@ -47,7 +47,7 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
                               {"sizes", fits::ToString(options.pairs)}};
   for (int fit = 0; fit < kShownFits; ++fit) {
     const auto i = static_cast<std::size_t>(fit);
-    const auto interval = simulation::CalcShareInterval(result.counts[i][i], options.trials);
+    const auto interval = study::CalcShareInterval(result.counts[i][i], options.trials);
     nlohmann::ordered_json answers;
     for (std::size_t j = 0; j < kShownFitNames.size(); ++j) {
       answers[kShownFitNames[j]] = result.counts[i][j];
@@ -63,7 +63,7 @@ nlohmann::ordered_json ToJson(const IdentificationOptions& options, const Identi
   return json;
 }
 
-void PrintText(const IdentificationOptions& options, const Identification& result) {
+void PrintText(const IdentificationOptions& options, const ObserverResult& result) {
   fmt::print("{}", Fold(fmt::format("{}\n{} insertions of each fit, force map: {}, sizes: {}\n\n",
                                     kWhat, options.trials, haptics::ToString(options.map),
                                     fits::ToString(options.pairs))));
@@ -71,7 +71,7 @@ void PrintText(const IdentificationOptions& options, const Identification& resul
                    "felt at end\nN", "right in\npaper W, %"});
   for (int fit = 0; fit < kShownFits; ++fit) {
     const auto i = static_cast<std::size_t>(fit);
-    const auto interval = simulation::CalcShareInterval(result.counts[i][i], options.trials);
+    const auto interval = study::CalcShareInterval(result.counts[i][i], options.trials);
     table.Add({kShownFitNames[i], fmt::format("{:.1f}", 100 * result.CalcShare(fit)),
                fmt::format("{:.1f} to {:.1f}", 100 * interval.low, 100 * interval.high),
                fmt::format("{}", result.counts[i][0]), fmt::format("{}", result.counts[i][1]),
@@ -85,7 +85,7 @@ void PrintText(const IdentificationOptions& options, const Identification& resul
 int Run(const IdentificationOptions& options, bool is_json) {
   const auto result = [&options] {
     const Busy busy("inserting and answering");
-    return simulation::Identify(options);
+    return study::Identify(options);
   }();
   if (!result) {
     return ReportFailure(result.error());

@@ -28,10 +28,10 @@
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "mates/fasteners.h"
+#include "orders/tool_reach.h"
+#include "orders/tool_turn.h"
 #include "product/drive_forms.h"
 #include "simulation/shapes.h"
-#include "simulation/tool_reach.h"
-#include "simulation/tool_turn.h"
 
 namespace hvas::app {
 namespace {
@@ -50,7 +50,7 @@ struct ToolOptions {
   std::string screw;
   std::filesystem::path tool;
   std::optional<double> turn_deg;
-  double torque_nm{simulation::TurnOptions().torque};  ///< Default: that of TurnOptions, a choice.
+  double torque_nm{orders::TurnOptions().torque};  ///< Default: that of TurnOptions, a choice.
   bool is_blind{false};
   std::filesystem::path output;
   bool is_forced{false};
@@ -159,14 +159,14 @@ std::optional<std::filesystem::path> FindShippedKey(const std::vector<DriveForm>
 /** A tool on a drive of the fastener, by one of its ends. */
 struct EndReach {
   simulation::ToolMate mate;
-  simulation::ToolReach reach;
+  orders::ToolReach reach;
 };
 
 struct Reach {
   std::filesystem::path tool_file;
   std::string tool_name;
   std::vector<EndReach> ends;
-  std::optional<simulation::TurnResult> turn;  ///< With --turn.
+  std::optional<orders::TurnResult> turn;  ///< With --turn.
 };
 
 Result<Product> LoadTool(const ToolOptions& options, const std::filesystem::path& file,
@@ -195,9 +195,9 @@ std::string DescribeAll(const std::vector<DriveForm>& drives) {
 const EndReach* FindBestEnd(const std::vector<EndReach>& ends);
 
 /** Turns the fastener with the best end of the tool. */
-Result<simulation::TurnResult> Turn(const ToolOptions& options, const Product& product,
-                                    const Fastener& fastener, const std::vector<EndReach>& ends,
-                                    const simulation::ReachQuery& query, contact::Scene* scene) {
+Result<orders::TurnResult> Turn(const ToolOptions& options, const Product& product,
+                                const Fastener& fastener, const std::vector<EndReach>& ends,
+                                const orders::ReachQuery& query, contact::Scene* scene) {
   const Occurrence& occurrence = product.occurrences[fastener.id.index()];
   const EndReach* best = FindBestEnd(ends);
   if (best == nullptr && !options.is_blind) {
@@ -205,7 +205,7 @@ Result<simulation::TurnResult> Turn(const ToolOptions& options, const Product& p
                 "hvas tool without --turn says what is in its way");
   }
   const product::MassProperties& mass = query.tool_part->mass;
-  simulation::TurnOptions turn;
+  orders::TurnOptions turn;
   turn.angle = units::FromDeg(*options.turn_deg);
   turn.torque = options.torque_nm;
   turn.lead = simulation::FindLead(product.part_of(fastener.id));
@@ -216,18 +216,17 @@ Result<simulation::TurnResult> Turn(const ToolOptions& options, const Product& p
     turn.I_BBcm_B = mass.I_BBcm_B;
   }
   const EndReach& end = best != nullptr ? *best : ends.front();
-  return simulation::TurnByContact(scene, query, end.mate, occurrence.X_WB, end.reach.FindBest(),
-                                   turn);
+  return orders::TurnByContact(scene, query, end.mate, occurrence.X_WB, end.reach.FindBest(), turn);
 }
 
 /** The room of each end of a tool that fits a fastener. */
-std::vector<EndReach> CalcReaches(const simulation::ReachQuery& query,
+std::vector<EndReach> CalcReaches(const orders::ReachQuery& query,
                                   const std::vector<simulation::ToolMate>& mates,
                                   const Occurrence& fastener, Diagnostics* diagnostics) {
   NoteStage("reach of the tool");
   std::vector<EndReach> ends;
   for (const simulation::ToolMate& mate : mates) {
-    ends.push_back({mate, simulation::CalcToolReach(query, mate, fastener.X_WB)});
+    ends.push_back({mate, orders::CalcToolReach(query, mate, fastener.X_WB)});
     if (ends.back().reach.is_truncated) {
       diagnostics->Warn("limit-contact", fastener.path,
                         "a contact query reached its limit of points",
@@ -277,7 +276,7 @@ Result<Reach> FindReach(const ToolOptions& options, const Product& product,
   for (const Occurrence& occurrence : product.occurrences) {
     (void)scene.Add((*shapes)[occurrence.part.index()], occurrence.X_WB);
   }
-  simulation::ReachQuery query;
+  orders::ReachQuery query;
   query.scene = &scene;
   query.fastener = contact::BodyId(fastener.id.index());
   query.tool = tool_shapes->front().get();
@@ -297,8 +296,8 @@ Result<Reach> FindReach(const ToolOptions& options, const Product& product,
 const EndReach* FindBestEnd(const std::vector<EndReach>& ends) {
   const EndReach* best = nullptr;
   for (const EndReach& end : ends) {
-    const simulation::FreeArc* arc = end.reach.FindBest();
-    const simulation::FreeArc* best_arc = best == nullptr ? nullptr : best->reach.FindBest();
+    const orders::FreeArc* arc = end.reach.FindBest();
+    const orders::FreeArc* best_arc = best == nullptr ? nullptr : best->reach.FindBest();
     if (arc != nullptr &&
         (best_arc == nullptr || (arc->can_go_on && !best_arc->can_go_on) ||
          (arc->can_go_on == best_arc->can_go_on && arc->angle() > best_arc->angle()))) {
@@ -329,7 +328,7 @@ class Names {
   const Product& product_;
 };
 
-Json MakeArcJson(const simulation::FreeArc& arc, const Names& names) {
+Json MakeArcJson(const orders::FreeArc& arc, const Names& names) {
   return {{"from_deg", units::ToDeg(arc.from)},
           {"to_deg", units::ToDeg(arc.to)},
           {"angle_deg", units::ToDeg(arc.angle())},
@@ -344,7 +343,7 @@ Json MakeReachJson(const Product& product, const Reach& reach) {
   Json ends = Json::array();
   for (const EndReach& end : reach.ends) {
     Json arcs = Json::array();
-    for (const simulation::FreeArc& arc : end.reach.arcs) {
+    for (const orders::FreeArc& arc : end.reach.arcs) {
       arcs.push_back(MakeArcJson(arc, names));
     }
     ends.push_back({{"drive", MakeDriveJson(end.mate.fastener)},
@@ -358,14 +357,14 @@ Json MakeReachJson(const Product& product, const Reach& reach) {
                     {"obstacle_along_axis", names.ToJson(end.reach.obstacle_along_axis)}});
   }
   const EndReach* best = FindBestEnd(reach.ends);
-  const simulation::FreeArc* arc = best == nullptr ? nullptr : best->reach.FindBest();
+  const orders::FreeArc* arc = best == nullptr ? nullptr : best->reach.FindBest();
   Json json{{"tool", reach.tool_name},
             {"tool_file", reach.tool_file.string()},
             {"angle_deg", arc == nullptr ? 0.0 : units::ToDeg(arc->angle())},
             {"can_go_on", CanGoOn(reach)},
             {"ends", std::move(ends)}};
   if (reach.turn) {
-    const simulation::TurnResult& turn = *reach.turn;
+    const orders::TurnResult& turn = *reach.turn;
     json["turn"] = {{"is_complete", turn.is_complete},
                     {"angle_deg", units::ToDeg(turn.angle)},
                     {"travel_mm", units::ToMm(turn.travel)},
@@ -381,12 +380,12 @@ Json MakeReachJson(const Product& product, const Reach& reach) {
 }
 
 /** The samples of a turn as a table. */
-std::string MakeTurnCsv(const Product& product, const simulation::TurnResult& turn) {
+std::string MakeTurnCsv(const Product& product, const orders::TurnResult& turn) {
   const Names names(product);
   std::string csv =
       "time_s,lift_mm,hand_deg,tool_deg,fastener_deg,travel_mm,torque_nm,hand_torque_nm,contacts,"
       "obstacle,obstacle_force_n\n";
-  for (const simulation::TurnSample& sample : turn.samples) {
+  for (const orders::TurnSample& sample : turn.samples) {
     csv += CsvRow()
                .Fixed(sample.time, 3)
                .Fixed(units::ToMm(sample.lift), 4)
@@ -404,7 +403,7 @@ std::string MakeTurnCsv(const Product& product, const simulation::TurnResult& tu
   return csv;
 }
 
-std::string DescribeStops(const simulation::FreeArc& arc, const Names& names) {
+std::string DescribeStops(const orders::FreeArc& arc, const Names& names) {
   return arc.is_full ? "nothing is in its way"
                      : fmt::format("between {} and {}", names.Of(arc.at_from), names.Of(arc.at_to));
 }
@@ -422,7 +421,7 @@ void PrintReach(const Product& product, const Fastener& fastener, const Reach& r
       fmt::print(
           "{}", Fold(fmt::format("  it has no room: it meets {}\n", names.Of(end.reach.obstacle))));
     }
-    for (const simulation::FreeArc& arc : end.reach.arcs) {
+    for (const orders::FreeArc& arc : end.reach.arcs) {
       const std::string put_on = arc.can_put_on
                                      ? ""
                                      : fmt::format("; it cannot be put on, as it meets {}",
@@ -436,7 +435,7 @@ void PrintReach(const Product& product, const Fastener& fastener, const Reach& r
     fmt::print("{}", Fold(fmt::format("{} cannot be put on {}\n", reach.tool_name, path)));
     return;
   }
-  const simulation::FreeArc& arc = *best->reach.FindBest();
+  const orders::FreeArc& arc = *best->reach.FindBest();
   const double pitch_deg = units::ToDeg(best->mate.pitch);
   if (arc.can_go_on) {
     fmt::print("{}", Fold(fmt::format("{} can turn {} without end\n", reach.tool_name, path)));
@@ -448,8 +447,7 @@ void PrintReach(const Product& product, const Fastener& fastener, const Reach& r
   }
 }
 
-void PrintTurn(const Product& product, const Fastener& fastener,
-               const simulation::TurnResult& turn) {
+void PrintTurn(const Product& product, const Fastener& fastener, const orders::TurnResult& turn) {
   const std::string& path = product.occurrences[fastener.id.index()].path;
   fmt::print("{}", Fold(fmt::format("{} turned by {:.1f} deg in {} stroke{}, {:.3f} mm along its "
                                     "axis, peak torque {:.2f} N m\n",

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "base/result.h"
+#include "paths/path.h"
 #include "product/product.h"
-#include "sweep/path.h"
 
 namespace hvas::app {
 
 /** Where a part was, and when. */
 struct TimedPath {
-  sweep::Path X_WB;
+  paths::Path X_WB;
   std::vector<std::int64_t> t_ns;  ///< Session time of each pose; empty where it has none.
 };
 

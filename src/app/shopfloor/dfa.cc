@@ -96,7 +96,7 @@ void AddDfa(CLI::App* app, int* status) {
   command->add_flag("--force", options->is_replaced, "Replace an existing file");
   command->add_option("--plan", options->order.plan,
                       "A plan that hvas plan has written with -o: its order is followed");
-  AddBaseOption(command, &options->order.base);
+  AddOrderChoice(command, &options->order);
   AddOrderOptions(command, options.get());
   AddJsonFlag(command, &options->is_json, "dfa or preparation");
   AddAccessoryOptions(command, &options->load);

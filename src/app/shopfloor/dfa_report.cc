@@ -10,8 +10,8 @@
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
 #include "base/units.h"
+#include "orders/hand_time.h"
 #include "pages/html_page.h"
-#include "simulation/hand_time.h"
 
 namespace hvas::app {
 namespace {
@@ -156,7 +156,7 @@ nlohmann::ordered_json MakeDfaJson(const DfaReport& report) {
     json["rows"].push_back(std::move(one));
   }
   if (report.rating != nullptr) {
-    json["modapts_s"] = simulation::kModSeconds * report.modapts_mods;
+    json["modapts_s"] = orders::kModSeconds * report.modapts_mods;
     json["advice"] = nlohmann::ordered_json::array();
     for (const shopfloor::DfaAdvice& advice : report.rating->advice) {
       json["advice"].push_back({{"text", advice.text}, {"saves_s", advice.seconds}});
@@ -188,7 +188,7 @@ void PrintDfa(const DfaReport& report) {
     return;
   }
   fmt::print("{}", Wrap(fmt::format("Time of the hands by MODAPTS, for the same order: {:.1f} s.",
-                                    simulation::kModSeconds * report.modapts_mods),
+                                    orders::kModSeconds * report.modapts_mods),
                         0));
   if (!report.rating->advice.empty()) {
     fmt::print("\nWhat would save most:\n");
@@ -212,7 +212,7 @@ std::string MakeDfaPage(const DfaReport& report) {
       report.rating == nullptr
           ? ""
           : MakeTile("time by MODAPTS",
-                     fmt::format("{:.1f} s", simulation::kModSeconds * report.modapts_mods)));
+                     fmt::format("{:.1f} s", orders::kModSeconds * report.modapts_mods)));
   body += fmt::format("<p>{}.</p>\n", Escape(DescribeSums(sheet)));
   body +=
       "<h2>Worksheet</h2>\n<div class=\"scroll\"><table><tr><th>part</th><th>count</th>"

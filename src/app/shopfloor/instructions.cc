@@ -142,12 +142,12 @@ nlohmann::ordered_json MakeJson(const InstructionsCommand& options, const simula
                               {"source", model.product->source},
                               {"output", options.output.string()},
                               {"steps", nlohmann::ordered_json::array()},
-                              {"hand_time_s", simulation::kModSeconds * plan.mods},
+                              {"hand_time_s", orders::kModSeconds * plan.mods},
                               {"left_out", plan.left_out.size()}};
   for (const shopfloor::WorkStep& step : plan.steps) {
     nlohmann::ordered_json one{
         {"parts", nlohmann::ordered_json::array()},
-        {"hand_time_s", simulation::kModSeconds * step.mods},
+        {"hand_time_s", orders::kModSeconds * step.mods},
         {"most_s", shopfloor::SumSeconds(shopfloor::ListMostSequences(step.motions))}};
     for (const product::OccurrenceId id : step.leading) {
       one["parts"].push_back(PathOf(model, id));
@@ -156,7 +156,7 @@ nlohmann::ordered_json MakeJson(const InstructionsCommand& options, const simula
       one["tool"] = step.tool;
     }
     one["motions"] = nlohmann::ordered_json::array();
-    for (const simulation::HandMotion& motion : step.motions) {
+    for (const orders::HandMotion& motion : step.motions) {
       one["motions"].push_back(
           {{"code", motion.code},
            {"mod", motion.mods},
@@ -188,7 +188,7 @@ int RunInstructions(const InstructionsCommand& options) {
     PrintJson(MakeJson(options, *planned->model, plan));
   } else {
     fmt::print("{}: {} steps, about {:.0f} s of the hands by MODAPTS{}\n", options.output.string(),
-               plan.steps.size(), simulation::kModSeconds * plan.mods,
+               plan.steps.size(), orders::kModSeconds * plan.mods,
                plan.left_out.empty()
                    ? ""
                    : fmt::format(", {} parts without a way in", plan.left_out.size()));
@@ -219,7 +219,7 @@ void AddInstructions(CLI::App* app, int* status) {
                       "A record of the product: the times of its parts stand beside the plan's");
   command->add_option("--plan", options->order.plan,
                       "A plan that hvas plan has written with -o: its order is followed");
-  AddBaseOption(command, &options->order.base);
+  AddOrderChoice(command, &options->order);
   AddOrderOptions(command, options.get());
   AddJsonFlag(command, &options->is_json, "instructions or preparation");
   AddAccessoryOptions(command, &options->load);

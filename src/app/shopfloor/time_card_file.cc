@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/fit/csv_table.h"
-#include "simulation/hand_time.h"
+#include "orders/hand_time.h"
 
 namespace hvas::app {
 namespace {
@@ -23,7 +23,7 @@ struct TimeColumn {
 
 constexpr std::array kTimeColumns{TimeColumn{"seconds", 1},
                                   TimeColumn{"tmu", shopfloor::kTmuSeconds},
-                                  TimeColumn{"mod", simulation::kModSeconds}};
+                                  TimeColumn{"mod", orders::kModSeconds}};
 
 }  // namespace
 

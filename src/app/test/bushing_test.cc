@@ -12,7 +12,7 @@
 #include "fits/iso286.h"
 #include "haptics/haptic_tick.h"
 #include "record/reader.h"
-#include "simulation/fit_of_mate.h"
+#include "sequence/fit_of_mate.h"
 
 namespace hvas::app {
 namespace {
@@ -53,8 +53,8 @@ std::shared_ptr<const fits::FitForce> DrawnFit(const std::string& fit, int seed)
   const auto product = LoadProduct(BushingOptions({"shaft=" + fit}), &diagnostics);
   for (const product::Mate& mate : product->mates) {
     if (mate.kind == product::MateKind::kAxisHole && mate.b.occurrence.value() == kShaft) {
-      return simulation::MakeFitForce(*product, mate, static_cast<std::uint64_t>(seed),
-                                      fits::PairChoice::kOfKind, &diagnostics);
+      return sequence::MakeFitForce(*product, mate, static_cast<std::uint64_t>(seed),
+                                    fits::PairChoice::kOfKind, &diagnostics);
     }
   }
   return nullptr;

@@ -30,7 +30,7 @@ std::string ReadText(const std::filesystem::path& file) {
 std::filesystem::path Copy(const std::string& name, const TemporaryFolder& folder) {
   const std::filesystem::path copy = folder / (name + ".step");
   std::filesystem::copy_file(std::filesystem::path(HVAS_SOURCE_DIR) / "products" / (name + ".step"),
-                             copy);
+                             copy, std::filesystem::copy_options::overwrite_existing);
   return copy;
 }
 
@@ -86,15 +86,15 @@ INSTANTIATE_TEST_SUITE_P(Products, NeutralPartsTest,
 
 TEST(NeutralNamesTest, TheVerdictOnTheSnapJointIsTheSame) {
   const TemporaryFolder folder;
-  std::vector<simulation::Sequence> sequences;
+  std::vector<sequence::Sequence> sequences;
   for (const auto& file : {Copy("snap_joint", folder), CopyWithoutNames("snap_joint", folder)}) {
     Diagnostics diagnostics;
     const auto model = PrepareModel(Open(file), {}, &diagnostics);
     ASSERT_TRUE(model) << model.error().ToString();
     sequences.push_back((*model)->sequence);
   }
-  const simulation::Sequence& named = sequences[0];
-  const simulation::Sequence& neutral = sequences[1];
+  const sequence::Sequence& named = sequences[0];
+  const sequence::Sequence& neutral = sequences[1];
   EXPECT_TRUE(named.gaps.empty());
   EXPECT_TRUE(neutral.gaps.empty());
   ASSERT_EQ(named.steps.size(), neutral.steps.size());

@@ -6,15 +6,15 @@
 #include <gtest/gtest.h>
 
 #include "assembly/prepare_model.h"
-#include "simulation/order_rules.h"
-#include "simulation/test/small_products.h"
+#include "orders/order_rules.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::assembly {
 namespace {
 
+using orders::OrderRules;
 using product::OccurrenceId;
 using simulation::Model;
-using simulation::OrderRules;
 
 class CheckOrderTest : public ::testing::Test {
  protected:
@@ -22,7 +22,7 @@ class CheckOrderTest : public ::testing::Test {
     Diagnostics diagnostics;
     auto model = PrepareModel(simulation::testing::CappedCollarUnderClamp(), {}, &diagnostics);
     model_ = model.value_or(nullptr);
-    rules_ = simulation::FindOrderRules(*model_, {});
+    rules_ = orders::FindOrderRules(*model_, {});
   }
 
   [[nodiscard]] OccurrenceId Find(const std::string& name) const {
@@ -57,8 +57,8 @@ TEST_F(CheckOrderTest, AnOrderThatIsPossibleHasItsCostAndItsSteps) {
     ASSERT_TRUE(checked.has_value()) << checked.error().ToString();
     ASSERT_TRUE(checked->order.has_value());
     EXPECT_GE(checked->order->cost, plan->search.orders.front().cost);
-    EXPECT_EQ(checked->order->counts, simulation::CountOrder(rules_, *checked->order));
-    const auto steps = simulation::ListSteps(rules_, *checked->order);
+    EXPECT_EQ(checked->order->counts, orders::CountOrder(rules_, *checked->order));
+    const auto steps = orders::ListSteps(rules_, *checked->order);
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto& step = steps[steps.size() - names.size() + i];
       EXPECT_EQ(step.occurrence, Find(names[i]));

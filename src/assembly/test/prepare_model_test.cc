@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "base/test/temporary_folder.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::assembly {
 namespace {
 
 using product::Product;
+using sequence::SequenceStep;
 using simulation::Model;
-using simulation::SequenceStep;
 
 /** The first part that a hand takes up. */
 std::string FirstTaken(const Model& model) {

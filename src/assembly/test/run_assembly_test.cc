@@ -13,7 +13,7 @@
 #include "session/recorded_model.h"
 #include "session/replay.h"
 #include "session/session_recorder.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::assembly {
 namespace {
@@ -80,7 +80,7 @@ TEST(RunAssemblyTest, FiveHandsTakeTurnsAndEachHasASeedAndADeviceOfItsOwn) {
   EXPECT_EQ(reader->meta().at("fifth_device"), "emulated:haply");
   std::set<std::uint64_t> seeds;
   for (std::size_t hand = 0; hand < haptics::kMaxHands; ++hand) {
-    seeds.insert(simulation::SeedOfHand(options.seed, hand));
+    seeds.insert(person::SeedOfHand(options.seed, hand));
   }
   EXPECT_EQ(seeds.size(), haptics::kMaxHands);
 }

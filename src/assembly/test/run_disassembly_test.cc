@@ -6,7 +6,7 @@
 #include "record/reader.h"
 #include "session/recorded_model.h"
 #include "session/replay.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::assembly {
 namespace {

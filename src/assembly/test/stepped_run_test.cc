@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::assembly {
 namespace {
@@ -68,7 +68,7 @@ TEST(SteppedRunTest, APartThatHangsInTheHandWeighsWhatItWeighs) {
   EXPECT_NEAR(F[2], -mass * kGravity, 0.01 * mass * kGravity);
   EXPECT_NEAR(std::hypot(F[0], F[1]), 0, 1e-3 * mass * kGravity);
   // The arm holds it up by its spring.
-  const simulation::PersonOptions arm;
+  const person::PersonOptions arm;
   const double sag = (Lead(*run, place).X_WR.p().z() - run->last().X_WH[2]);
   EXPECT_NEAR(arm.stiffness * sag, -F[2], 1e-3);
 }
@@ -83,7 +83,7 @@ TEST(SteppedRunTest, APegBesideItsBoreRestsOnTheRimAgainstTheArm) {
   EXPECT_FALSE(run->is_seated());
   EXPECT_GT(run->last().contacts, 0);
   EXPECT_NEAR(run->last().X_WB[2], kFloor + rim, 0.1e-3);
-  const simulation::PersonOptions arm;
+  const person::PersonOptions arm;
   const double pull = arm.stiffness * (Lead(*run, below).X_WR.p().z() - run->last().X_WH[2]);
   EXPECT_NEAR(run->last().F_felt_W[2], -pull, 0.02);
 }

@@ -23,15 +23,15 @@
 #include "base/random.h"
 #include "contact/test/parts.h"
 #include "haptics/haptic_tick.h"
-#include "simulation/fit_of_mate.h"
+#include "sequence/fit_of_mate.h"
 #include "simulation/held_part_maker.h"
 
 namespace hvas::assembly {
 namespace {
 
 using haptics::HeldPart;
+using sequence::SequenceStep;
 using simulation::Model;
-using simulation::SequenceStep;
 using spatial::Pose;
 
 constexpr double kRestDistance = 1e-6;  // [m]

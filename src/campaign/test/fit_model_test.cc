@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "mates/assignments.h"
-#include "simulation/fit_of_mate.h"
-#include "simulation/test/small_products.h"
+#include "sequence/fit_of_mate.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::campaign {
 namespace {
@@ -48,7 +48,7 @@ TEST(FitModel, AProductHasTheFitsThatASimulationDrawsForTheSeed) {
   const product::Mate& mate = product.mates[model->mates()[0].id.index()];
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const auto force =
-        simulation::MakeFitForce(product, mate, seed, fits::PairChoice::kAny, &diagnostics);
+        sequence::MakeFitForce(product, mate, seed, fits::PairChoice::kAny, &diagnostics);
     ASSERT_NE(force, nullptr);
     const RunResult made = MakeProduct(*model, plan, seed);
     EXPECT_EQ(made.force, force->max_resistance());  // To the bit.
@@ -73,7 +73,7 @@ TEST(FitModel, DrawnConditionsGiveTheSameFitAgain) {
     SetDrawnConditions(*model, seed, sizes, &made);
     const product::Mate& mate = made.mates[model->mates()[0].id.index()];
     const auto force =
-        simulation::MakeFitForce(made, mate, seed, fits::PairChoice::kAny, &diagnostics);
+        sequence::MakeFitForce(made, mate, seed, fits::PairChoice::kAny, &diagnostics);
     ASSERT_NE(force, nullptr);
     const double expected = MakeProduct(*model, MakePressPlan(0), seed).force;
     EXPECT_NEAR(force->max_resistance(), expected, 1e-9 * expected);

@@ -6,7 +6,7 @@
 #include <hdf5.h>
 
 #include "evidence/test/evidence_fixture.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::evidence {
 namespace {

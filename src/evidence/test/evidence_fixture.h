@@ -12,13 +12,13 @@
 #include <gtest/gtest.h>
 
 #include "base/test/temporary_folder.h"
+#include "person/simulated_person.h"
 #include "record/recorder.h"
 #include "session/recorded_model.h"
 #include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
-#include "simulation/simulated_person.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::evidence::testing {
 
@@ -49,7 +49,7 @@ class EvidenceTest : public ::testing::Test {
     const auto recorder = record::Recorder::Create(options, session::MakeModelMeta(*model));
     session::SessionRecorder sink(recorder->get(), *model);
     simulation::Simulation simulation(model, haptics::TickOptions());
-    simulation::SimulatedPerson person({}, 1, simulation::StartOfHand(*model));
+    person::SimulatedPerson person({}, 1, simulation::StartOfHand(*model));
     simulation::AssemblyRun run(&simulation, &person, &sink);
     sink.Begin(&simulation);
     (void)RunLockstep(run.MakeExecution(&person, 60));

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "evidence/picture.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::evidence {
 namespace {
 
-using simulation::GapReason;
+using orders::GapReason;
 using simulation::Model;
 
 /** The share of the pixels of a picture of two boxes, one in front of the other, that marks fill.
@@ -44,7 +44,7 @@ TEST(GapPictureTest, ShowsThePartAndWhatStopsIt) {
   reason.direction_W = Vec3::UnitX();
   reason.travelled = 1e-3;
   EXPECT_TRUE(MakeGapPicture(model, reason).empty());  // Nothing stops it.
-  simulation::MetFaces met;
+  sequence::MetFaces met;
   met.own_face = 0;
   met.other = product::OccurrenceId(0);
   met.other_face = 1;

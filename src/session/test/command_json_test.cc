@@ -11,10 +11,10 @@
 namespace hvas::session {
 namespace {
 
+using sequence::SequenceStep;
 using simulation::GivenCommand;
 using simulation::PartState;
 using simulation::Placement;
-using simulation::SequenceStep;
 
 /** Numbers with all of their digits. */
 class Numbers {

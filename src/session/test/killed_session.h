@@ -13,11 +13,11 @@
 #include <thread>
 
 #include "base/clock.h"
+#include "person/simulated_person.h"
 #include "record/recorder.h"
 #include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
-#include "simulation/simulated_person.h"
 
 /** Sessions that are killed while they are recorded. */
 namespace hvas::session::testing {
@@ -57,7 +57,7 @@ class Teller final : public simulation::Sink {
   Teller teller(&sink, ticks);
   for (std::uint64_t seed = 1;; ++seed) {
     simulation::Simulation simulation(model, haptics::TickOptions());
-    simulation::SimulatedPerson person({}, seed, simulation::StartOfHand(*model));
+    person::SimulatedPerson person({}, seed, simulation::StartOfHand(*model));
     simulation::AssemblyRun run(&simulation, &person, &teller);
     sink.Begin(&simulation);
     simulation::Execution execution = run.MakeExecution(&person, 1e6);

@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "person/simulated_person.h"
 #include "record/reader.h"
 #include "session/recorded_model.h"
 #include "session/replay.h"
 #include "session/session_recorder.h"
 #include "simulation/assembly_run.h"
 #include "simulation/executors.h"
-#include "simulation/simulated_person.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::session::testing {
 
@@ -34,15 +34,16 @@ struct Stretch {
                                     model, std::vector{options, options})),
         first({}, 1, simulation::StartOfHand(*model)),
         second({}, 2, simulation::StartOfHand(*model)),
-        run(simulation.get(), simulation::Persons{&first, hands == 2 ? &second : nullptr}, sink) {}
+        run(simulation.get(), simulation::TaskOperators{&first, hands == 2 ? &second : nullptr},
+            sink) {}
 
   [[nodiscard]] simulation::Execution MakeExecution(double limit_s) {
     return run.MakeExecution({&first, simulation->hand_count() == 2 ? &second : nullptr}, limit_s);
   }
 
   std::unique_ptr<simulation::Simulation> simulation;
-  simulation::SimulatedPerson first;
-  simulation::SimulatedPerson second;
+  person::SimulatedPerson first;
+  person::SimulatedPerson second;
   simulation::AssemblyRun run;
 };
 

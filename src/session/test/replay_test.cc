@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "base/test/temporary_folder.h"
+#include "person/test/waypoints.h"
 #include "session/command_json.h"
 #include "session/test/recorded_session.h"
-#include "simulation/test/waypoints.h"
 #include "spatial/rounding.h"
 
 namespace hvas::session {
@@ -95,7 +95,7 @@ std::vector<simulation::PartState> RecordTableSubassembly(const std::filesystem:
   simulation::Simulation simulation(model, haptics::TickOptions());
   simulation.physics().AllowJoining(0);
   sink.Begin(&simulation);
-  simulation::AssemblyRun run(&simulation, simulation::Persons{}, &sink);
+  simulation::AssemblyRun run(&simulation, simulation::TaskOperators{}, &sink);
   constexpr std::size_t kCarrier = 1;
   constexpr std::size_t kPeg = 2;
   const auto& carrier = model->bodies[kCarrier];
@@ -104,12 +104,12 @@ std::vector<simulation::PartState> RecordTableSubassembly(const std::filesystem:
   const Vec3 p_goal =
       carrier.X_WB_start * carrier.X_WB_goal.Inverse() * peg.X_WB_goal * peg.mass.p_BoBcm_B;
   const double height = p_goal.z() + 60e-3;
-  auto way = simulation::testing::CarryOver(p_peg, p_goal, height);
+  auto way = person::testing::CarryOver(p_peg, p_goal, height);
   const Vec3 p_fall = p_goal + Vec3(-0.12, 0, 30e-3);
-  for (const auto& point : simulation::testing::CarryOver(p_goal, p_fall, height)) {
+  for (const auto& point : person::testing::CarryOver(p_goal, p_fall, height)) {
     way.push_back(point);
   }
-  simulation::testing::WaypointHand hand(way);
+  person::testing::WaypointHand hand(way);
   simulation::Execution execution = run.MakeExecution(&hand, 60);
   execution.is_done = [&hand] { return hand.is_done(); };
   (void)RunLockstep(execution);

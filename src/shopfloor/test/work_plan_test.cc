@@ -10,7 +10,7 @@
 #include "shopfloor/most_sequence.h"
 #include "shopfloor/motion_code.h"
 #include "shopfloor/work_animation.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::shopfloor {
 namespace {
@@ -58,11 +58,11 @@ TEST(WorkPlanTest, MotionsAddUpAndAreCodesOfModapts) {
   const WorkPlan plan = MakeWorkPlan(*Capped().model, Capped().plan);
   int all = 0;
   for (const WorkStep& step : plan.steps) {
-    EXPECT_EQ(simulation::SumMods(step.motions), step.mods);
-    for (const simulation::HandMotion& motion : step.motions) {
+    EXPECT_EQ(orders::SumMods(step.motions), step.mods);
+    for (const orders::HandMotion& motion : step.motions) {
       const auto coded = ParseMotions(motion.code, ModaptsCard());
       ASSERT_TRUE(coded) << motion.code;
-      EXPECT_NEAR(SumSeconds(*coded), simulation::kModSeconds * motion.mods, 1e-9) << motion.code;
+      EXPECT_NEAR(SumSeconds(*coded), orders::kModSeconds * motion.mods, 1e-9) << motion.code;
       for (const Language language : {Language::kEnglish, Language::kGerman}) {
         EXPECT_FALSE(DescribeMotion(motion, language).empty());
       }
@@ -74,8 +74,8 @@ TEST(WorkPlanTest, MotionsAddUpAndAreCodesOfModapts) {
 }
 
 TEST(MostSequenceTest, FollowsTheMotions) {
-  using simulation::HandMotion;
-  using simulation::MotionPurpose;
+  using orders::HandMotion;
+  using orders::MotionPurpose;
   const std::vector<HandMotion> screw{
       {MotionPurpose::kGoTo, "M4", 4, 0.3},       {MotionPurpose::kGet, "E2 G3", 5, 0.01},
       {MotionPurpose::kBring, "M4", 4, 0.3},      {MotionPurpose::kPut, "E2 P5", 7, 0},

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
 namespace {

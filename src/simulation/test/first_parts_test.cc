@@ -8,7 +8,7 @@
 
 #include "haptics/haptic_tick.h"
 #include "simulation/simulation.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/mate_guide.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
 namespace {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "simulation/test/small_products.h"
+#include "sequence/extraction.h"
+#include "sequence/mate_faces.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
 namespace {
@@ -21,7 +23,7 @@ haptics::MateFaces CollectOfHole(const contact::ShapeSource& source) {
   const product::Part& part = product.parts[id.index()];
   for (const product::Feature& feature : part.features) {
     if (feature.kind == FeatureKind::kHole) {
-      return CollectMateFaces(part, feature.faces);
+      return sequence::CollectMateFaces(part, feature.faces);
     }
   }
   ADD_FAILURE() << "no hole";
@@ -58,7 +60,8 @@ TEST(CollectMateFacesTest, NeighboursOfABoxFaceAreTheFourAroundIt) {
   const auto id =
       testing::AddPart(&product, "box", contact::testing::Block(Vec3(5e-3, 6e-3, 7e-3)));
   for (const product::Feature& feature : product.parts[id.index()].features) {
-    const haptics::MateFaces faces = CollectMateFaces(product.parts[id.index()], feature.faces);
+    const haptics::MateFaces faces =
+        sequence::CollectMateFaces(product.parts[id.index()], feature.faces);
     ASSERT_EQ(faces.mating.size(), 1u);
     EXPECT_EQ(faces.with_neighbours.size(), 5u);
     const std::uint32_t opposite = faces.mating[0] ^ 1u;
@@ -85,7 +88,7 @@ TEST(CollectMateFacesTest, FlankThatReachesAPlaneInOnePointIsItsNeighbour) {
     const product::Part& part = product.parts[id.index()];
     for (std::uint32_t f = 0; f < part.faces.size(); ++f) {
       if (part.faces[f].surface.axis.z() > 0.9) {
-        const Faces faces = CollectMateFaces(part, {FaceId(f)}).with_neighbours;
+        const Faces faces = sequence::CollectMateFaces(part, {FaceId(f)}).with_neighbours;
         return std::binary_search(faces.begin(), faces.end(), flank);
       }
     }
@@ -126,7 +129,7 @@ TEST(CompileTest, TheTableIsAsNearAsTheWaysOfThePartsAllow) {
   };
   // The peg comes from above: nothing but the fixture is between product and table.
   EXPECT_LT(height_below(*testing::PegInBlockModel()), 0.5);
-  for (const SequenceStep& step : testing::PegInBlockModel()->sequence.steps) {
+  for (const sequence::SequenceStep& step : testing::PegInBlockModel()->sequence.steps) {
     EXPECT_GT(step.extraction_W.z(), 0.99);
   }
 }
@@ -189,6 +192,23 @@ TEST(CompileTest, NumberOfThreadsDoesNotChangeTheModel) {
     EXPECT_EQ(one->bodies[i].X_WB_start.q().coeffs(), two.bodies[i].X_WB_start.q().coeffs());
     EXPECT_EQ(one->bodies[i].shape->point_count(), two.bodies[i].shape->point_count());
   }
+}
+
+TEST(ModelSequenceTest, AWayThatEndsBehindAPartFarAwayTakesNoMoreThanFiveThousandLooks) {
+  Product product;
+  product.name = "far";
+  const auto block = testing::AddPart(&product, "block", contact::testing::Block({0.1, 0.1, 0.1}));
+  testing::Place(&product, block, "here");
+  testing::Place(&product, block, "there", spatial::Pose(Vec3(1e7, 0, 0)));
+  testing::Complete(&product);
+  const auto model = testing::CompileFast(std::move(product));
+  contact::Scene scene;
+  const sequence::SequenceInput input = MakeSequenceInput(*model, &scene);
+  sequence::Extraction extraction(input, &model->sequence);
+  EXPECT_GT(extraction.CalcWayLength({OccurrenceId(0)}, Vec3::UnitX()), 0.99e7);
+  (void)extraction.TryRemoveAlong({OccurrenceId(0)}, Vec3::UnitX());
+  EXPECT_GT(extraction.looks(), 100u);
+  EXPECT_LE(extraction.looks(), 5001u);
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "mates/flexible_parts.h"
-#include "simulation/test/session.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::simulation {
 namespace {
@@ -18,6 +17,7 @@ namespace {
 using contact::testing::CylinderZ;
 using contact::testing::Lathe;
 using contact::testing::PlaneAt;
+using sequence::GivingPair;
 using ::testing::IsSubstring;
 using testing::OccurrenceId;
 using testing::Pose;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/loop_clock.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::studio {
 namespace {
@@ -112,7 +112,7 @@ class LiveRunTest : public ::testing::Test {
 
 TEST_F(LiveRunTest, DeviceThatIsPulledOutGivesNoForceAndIsTakenUpAgain) {  // N6
   const Pose X_WB = run_->state().parts[kPegIndex].X_WB;
-  const simulation::SequenceStep step =
+  const sequence::SequenceStep step =
       *std::find_if(model_->sequence.steps.begin(), model_->sequence.steps.end(),
                     [](const auto& s) { return s.occurrence.index() == kPegIndex; });
   const Vec3 p_WH = X_WB * model_->bodies[kPegIndex].mass.p_BoBcm_B;

@@ -30,8 +30,8 @@ TEST(PathLogTest, X13KeepsTheWayOfThePartInTheHand) {  // the path is recorded
   for (int i = 0; i < 100; ++i) {
     log.Add(FrameAt(OccurrenceId(1), Vec3(1e-3 * i, 0, 0)));
   }
-  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
-  EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 99e-3, 1e-12);
+  const paths::Path path = log.PathOf(OccurrenceId(1)).path;
+  EXPECT_NEAR(paths::CalcLength(path, Vec3::Zero()), 99e-3, 1e-12);
   EXPECT_EQ(path.back().p().x(), 99e-3);
   EXPECT_TRUE(log.PathOf(OccurrenceId(0)).path.empty());
 }
@@ -43,7 +43,7 @@ TEST(PathLogTest, EachHoldBeginsAnewAndTheLastOneStays) {
   log.Add(FrameAt(OccurrenceId(1), Vec3(3, 0, 0)));
   log.Add(FrameAt(OccurrenceId(1), Vec3(4, 0, 0)));
   log.Add(FrameAt(OccurrenceId(0), Vec3(5, 0, 0)));
-  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
+  const paths::Path path = log.PathOf(OccurrenceId(1)).path;
   EXPECT_EQ(path.front().p().x(), 3);
   EXPECT_EQ(path.back().p().x(), 4);
   EXPECT_EQ(log.PathOf(OccurrenceId(0)).path.front().p().x(), 5);
@@ -58,10 +58,10 @@ TEST(PathLogTest, LongHoldsAreKeptWithFewerPoses) {
     const double angle = 2 * std::numbers::pi * i / kFrames;
     log.Add(FrameAt(OccurrenceId(1), Vec3(std::cos(angle), std::sin(angle), 0)));
   }
-  const sweep::Path path = log.PathOf(OccurrenceId(1)).path;
+  const paths::Path path = log.PathOf(OccurrenceId(1)).path;
   EXPECT_LE(path.size(), PathLog::kMaxPoses + 1);
   EXPECT_GT(path.size(), PathLog::kMaxPoses / 4);
-  EXPECT_NEAR(sweep::CalcLength(path, Vec3::Zero()), 2 * std::numbers::pi, 1e-4);
+  EXPECT_NEAR(paths::CalcLength(path, Vec3::Zero()), 2 * std::numbers::pi, 1e-4);
 }
 
 TEST(PathLogTest, PartThatRestsInTheHandNeedsNoMemory) {
@@ -73,7 +73,7 @@ TEST(PathLogTest, PartThatRestsInTheHandNeedsNoMemory) {
 }
 
 TEST(SweptGlbTest, HasTheMeshWithItsNormals) {
-  sweep::SurfaceMesh mesh;
+  paths::SurfaceMesh mesh;
   mesh.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   const auto glb = MakeGlb(mesh, "a \"part\"");

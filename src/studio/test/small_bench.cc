@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/test/temporary_folder.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 
 namespace hvas::studio::testing {
 namespace {

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "base/scratch_folder.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 #include "studio/hub.h"
 #include "studio/scene_json.h"
 #include "studio/test/protocol_schema.h"

@@ -45,8 +45,8 @@ class WorkbenchOrdersTest : public ::testing::Test {
     [[nodiscard]] std::vector<std::string> Inserted() {
       const auto scene = bench.live().scene();
       std::vector<std::string> names;
-      for (const simulation::SequenceStep& step : scene->model->sequence.steps) {
-        if (step.kind == simulation::SequenceStep::Kind::kInsert) {
+      for (const sequence::SequenceStep& step : scene->model->sequence.steps) {
+        if (step.kind == sequence::SequenceStep::Kind::kInsert) {
           names.push_back(scene->model->product->occurrences[step.occurrence.index()].name);
         }
       }
@@ -79,7 +79,7 @@ TEST_F(WorkbenchOrdersTest, OrdersAreFoundAndChecked) {
   std::promise<bool> is_possible;
   ASSERT_TRUE(one.bench.orders().Check(
       one.Find({"clamp", "peg", "cap"}),
-      [&](const simulation::OrderRules&, const Result<assembly::CheckedOrder>& checked) {
+      [&](const orders::OrderRules&, const Result<assembly::CheckedOrder>& checked) {
         is_possible.set_value(!checked || checked->order.has_value());
       }));
   EXPECT_FALSE(is_possible.get_future().get());
@@ -107,7 +107,7 @@ TEST_F(WorkbenchOrdersTest, PartsAreExplained) {
   Bench one("");
   one.Open();
   for (const std::uint32_t id : {1U, 1000U}) {
-    std::promise<Result<simulation::GapReason>> explained;
+    std::promise<Result<orders::GapReason>> explained;
     ASSERT_TRUE(one.bench.orders().Explain(
         OccurrenceId(id),
         [&](const simulation::Model&, const auto& reason) { explained.set_value(reason); }));

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/scratch_folder.h"
-#include "simulation/test/small_products.h"
+#include "simulation/test/small_models.h"
 #include "study/simulated_study.h"
 #include "study/trial_pair.h"
 

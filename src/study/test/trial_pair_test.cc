@@ -79,7 +79,7 @@ TEST(TrialPairTest, W12ObserverIsShownWhatTheModelHas) {
   const auto model = MakeModel(condition);
   const std::size_t step = FindStep(*model);
   const auto drawn = *DrawPair(*model, step, condition, 9);
-  const simulation::ShownPair shown = FindShownPair(*drawn, step);
+  const ShownPair shown = FindShownPair(*drawn, step);
   EXPECT_EQ(shown.fit, drawn->mates[FindFittedMate(*drawn, step)->index()].fit);
   EXPECT_EQ(shown.kind, fits::FitKind::kInterference);
   // Its training shows pairs of the same kind.
