@@ -37,8 +37,8 @@ Hand MakeGuidedHand(const simulation::Model& model, const simulation::RenderOpti
   Hand hand;
   hand.tick.device.name = "guided hand";
   hand.tick.device.max_force = 1.2 * simulation::kMostHandForce;  // The coupling has nine tenths.
-  hand.tick.device.max_torque = 5;
-  hand.tick.coupling = {4000, 90, 20, 1};
+  hand.tick.device.max_torque = 20;
+  hand.tick.coupling = {4000, 90, 60, 3};
   hand.tick.dt = 1 / render.rate_hz;
   hand.mover = std::make_unique<simulation::GuidedHand>(simulation::StartOfHand(model));
   return hand;

@@ -93,7 +93,8 @@ Result<void> Relate(const OpenOptions& options, WorkWatch* watch, Product* produ
   if (auto welded = product::WeldUnits(stated->apart, product, diagnostics, watch); !welded) {
     return welded;
   }
-  if (auto set = mates::SetFlexibleParts(stated->flexible, options.rigid, product, diagnostics);
+  if (auto set =
+          mates::SetFlexibleParts(stated->flexible, options.rigid, product, diagnostics, watch);
       !set) {
     return set;
   }

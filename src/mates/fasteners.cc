@@ -170,8 +170,8 @@ bool IsBearing(const Product& product, OccurrenceId id) {
 bool IsFlexible(const Product& product, OccurrenceId id) {
   const auto is_bent = [](std::string_view name) {
     const auto kind = product::FindFlexibleKind(name);
-    return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kSnapHook ||
-           kind == product::FlexibleKind::kRubber;
+    return kind == product::FlexibleKind::kCable || kind == product::FlexibleKind::kBelt ||
+           kind == product::FlexibleKind::kSnapHook || kind == product::FlexibleKind::kRubber;
   };
   const product::ElasticPart* elastic = product::FindElastic(product, id);
   // The seat of a shaft seal has a fit, whatever its lip does.

@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "mates/assignments.h"
 #include "product/flexible.h"
+#include "product/yielding_forms.h"
 
 namespace hvas::mates {
 namespace {
@@ -57,25 +58,46 @@ void Note(const Product& product, const std::map<OccurrenceId, FlexiblePart>& pa
         fmt::format("may give {:.2f} mm where a way needs it ({}, by {}){}",
                     units::ToMm(part->allowance), product::ToString(part->kind), part->reason,
                     count > 1 ? fmt::format(", and {} more of this part", count - 1) : ""),
-        "state another allowance under \"flexible\" in the side file, or name it with --rigid");
+        "state another allowance under \"compliant\" in the side file, or name it with --rigid");
   }
 }
 
-/** Classifies each part by its form, unless all of them are rigid. */
-std::map<OccurrenceId, FlexiblePart> RecogniseFlexible(const Product& product, bool is_all_rigid) {
+/** Classifies each part, unless all of them are rigid. */
+std::map<OccurrenceId, FlexiblePart> RecogniseFlexible(const Product& product, bool is_all_rigid,
+                                                       WorkWatch* watch) {
   std::map<OccurrenceId, FlexiblePart> parts;
-  std::map<PartId, std::optional<FlexiblePart>> recognised;
-  for (const product::Occurrence& occurrence : product.occurrences) {
-    auto [entry, is_new] = recognised.try_emplace(occurrence.part);
-    if (is_new && !is_all_rigid) {
-      entry->second = product::ClassifyFlexible(product.parts[occurrence.part.index()]);
-    }
-    if (is_all_rigid) {
+  if (is_all_rigid) {
+    for (const product::Occurrence& occurrence : product.occurrences) {
       parts[occurrence.id] = MakeRigid(occurrence.id);
-    } else if (entry->second) {
-      FlexiblePart part = *entry->second;
-      part.occurrence = occurrence.id;
-      parts[occurrence.id] = std::move(part);
+    }
+    return parts;
+  }
+
+  struct Recognised {
+    std::optional<FlexiblePart> by_form;
+    std::optional<FlexiblePart> by_words;
+  };
+
+  std::map<PartId, Recognised> recognised;
+  std::map<OccurrenceId, FlexiblePart> in_place;
+  for (FlexiblePart& part : product::ListYieldingInPlace(product, watch)) {
+    in_place.emplace(part.occurrence, std::move(part));
+  }
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    const product::Part& drawn = product.part_of(occurrence.id);
+    const auto [entry, is_new] = recognised.try_emplace(occurrence.part);
+    if (is_new) {
+      entry->second = {product::ClassifyFlexibleByForm(drawn),
+                       product::ClassifyFlexibleByWords(drawn)};
+    }
+    std::optional<FlexiblePart> part = entry->second.by_form;
+    if (const auto found = in_place.find(occurrence.id); !part && found != in_place.end()) {
+      part = found->second;
+    }
+    part = part ? part : entry->second.by_words;
+    if (part) {
+      part->occurrence = occurrence.id;
+      parts[occurrence.id] = std::move(*part);
     }
   }
   return parts;
@@ -85,9 +107,9 @@ std::map<OccurrenceId, FlexiblePart> RecogniseFlexible(const Product& product, b
 
 Result<void> SetFlexibleParts(const std::vector<StatedFlexible>& stated,
                               const std::vector<std::string>& rigid, Product* product,
-                              Diagnostics* diagnostics) {
+                              Diagnostics* diagnostics, WorkWatch* watch) {
   const bool is_all_rigid = std::find(rigid.begin(), rigid.end(), kAll) != rigid.end();
-  std::map<OccurrenceId, FlexiblePart> parts = RecogniseFlexible(*product, is_all_rigid);
+  std::map<OccurrenceId, FlexiblePart> parts = RecogniseFlexible(*product, is_all_rigid, watch);
   for (const std::string& name : rigid) {
     if (name == kAll) {
       continue;

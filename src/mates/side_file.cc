@@ -95,11 +95,12 @@ constexpr SideFileKey Choice(std::string_view name, std::span<const std::string_
 }
 
 constexpr std::array kDocumentKeys{
-    Choice("format", kFormats, true),   Note(),
-    Of(Type::kList, "fits", false),     Of(Type::kList, "mates", false),
-    Of(Type::kList, "removed", false),  Of(Type::kList, "relations", false),
-    Of(Type::kList, "contacts", false), Of(Type::kList, "apart", false),
-    Of(Type::kList, "flexible", false), Of(Type::kList, "elastic", false)};
+    Choice("format", kFormats, true),    Note(),
+    Of(Type::kList, "fits", false),      Of(Type::kList, "mates", false),
+    Of(Type::kList, "removed", false),   Of(Type::kList, "relations", false),
+    Of(Type::kList, "contacts", false),  Of(Type::kList, "apart", false),
+    Of(Type::kList, "compliant", false), Of(Type::kList, "flexible", false),
+    Of(Type::kList, "elastic", false)};
 
 constexpr std::array kFitKeys{Text("mate"),
                               Text("hole"),
@@ -163,6 +164,16 @@ constexpr std::array kElasticKeys{
     Number("modulus_mpa", 0, kStiffestMaterial / kPascalsPerMegapascal, true),
     Number("stiffness_n_per_mm", 0, kStiffestSpring* units::kMetresPerMillimetre, true),
     Note()};
+
+constexpr const char* kAllowanceKey = "allowance_mm";
+
+/** Those of "elastic", and how far the part may give. */
+constexpr auto kCompliantKeys = [] {
+  std::array<SideFileKey, kElasticKeys.size() + 1> keys{};
+  std::copy(kElasticKeys.begin(), kElasticKeys.end(), keys.begin());
+  keys.back() = Number(kAllowanceKey, 0, kLargestGive_mm);
+  return keys;
+}();
 
 /** One object of the file with its place in it. */
 struct Place {
@@ -479,10 +490,8 @@ Result<StatedFlexible> ReadFlexible(const ordered_json& item, const Place& place
                         place.Where()};
 }
 
-Result<StatedElastic> ReadElastic(const ordered_json& item, const Place& place) {
-  if (const auto checked = CheckObject(item, SideFileObject::kElastic, place); !checked) {
-    return Unexpected(checked.error());
-  }
+/** Reads the kind and the sizes of a part that pushes back. */
+Result<StatedElastic> ReadSizes(const ordered_json& item, const Place& place) {
   StatedElastic stated;
   stated.part = TextAt(item, "part");
   if (const std::string kind = TextAt(item, "kind"); !kind.empty()) {
@@ -506,6 +515,41 @@ Result<StatedElastic> ReadElastic(const ordered_json& item, const Place& place) 
   stated.modulus = NumberAt(item, "modulus_mpa", kPascalsPerMegapascal);
   stated.stiffness = NumberAt(item, "stiffness_n_per_mm", 1 / units::kMetresPerMillimetre);
   stated.where = place.Where();
+  return stated;
+}
+
+Result<StatedElastic> ReadElastic(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kElastic, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  return ReadSizes(item, place);
+}
+
+/** An entry of "compliant": how far a part gives, what pushes back, or both. */
+struct StatedCompliant {
+  std::optional<StatedFlexible> flexible;
+  std::optional<StatedElastic> elastic;
+};
+
+Result<StatedCompliant> ReadCompliant(const ordered_json& item, const Place& place) {
+  if (const auto checked = CheckObject(item, SideFileObject::kCompliant, place); !checked) {
+    return Unexpected(checked.error());
+  }
+  StatedCompliant stated;
+  if (const auto allowance = NumberAt(item, kAllowanceKey, units::kMetresPerMillimetre)) {
+    stated.flexible = StatedFlexible{TextAt(item, "part"), *allowance, place.Where()};
+  }
+  const bool has_sizes =
+      std::any_of(kElasticKeys.begin(), kElasticKeys.end(), [&item](const SideFileKey& key) {
+        return key.name != "part" && key.name != "note" && item.contains(key.name);
+      });
+  if (has_sizes || !stated.flexible) {
+    auto elastic = ReadSizes(item, place);
+    if (!elastic) {
+      return Unexpected(elastic.error());
+    }
+    stated.elastic = std::move(*elastic);
+  }
   return stated;
 }
 
@@ -563,6 +607,8 @@ std::span<const SideFileKey> KeysOf(SideFileObject object) {
       return kContactKeys;
     case SideFileObject::kApart:
       return kApartKeys;
+    case SideFileObject::kCompliant:
+      return kCompliantKeys;
     case SideFileObject::kFlexible:
       return kFlexibleKeys;
     case SideFileObject::kElastic:
@@ -627,6 +673,18 @@ Result<SideFile> ParseSideFile(std::string_view text, const std::filesystem::pat
   }
   if (read) {
     read = ReadList(top, "elastic", "elastic", ReadElastic, &result.elastic);
+  }
+  std::vector<StatedCompliant> compliant;
+  if (read) {
+    read = ReadList(top, "compliant", "compliant", ReadCompliant, &compliant);
+  }
+  for (StatedCompliant& stated : compliant) {
+    if (stated.flexible) {
+      result.flexible.push_back(std::move(*stated.flexible));
+    }
+    if (stated.elastic) {
+      result.elastic.push_back(std::move(*stated.elastic));
+    }
   }
   if (!read) {
     return Unexpected(read.error());

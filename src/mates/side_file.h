@@ -30,6 +30,7 @@ enum class SideFileObject {
   kRelation,
   kContact,
   kApart,
+  kCompliant,
   kFlexible,
   kElastic
 };
@@ -110,15 +111,15 @@ struct StatedContact {
   std::string where;
 };
 
-/** "flexible": how far a part may give where it meets another one on its way. */
+/** "compliant", "flexible": how far a part may give where it meets another one on its way. */
 struct StatedFlexible {
   std::string part;     ///< Occurrences of this name or path.
   double allowance{0};  ///< [m]; 0: it is rigid.
   std::string where;
 };
 
-/** "elastic": what pushes back where another part presses on it, and how large it is. What is not
- stated is measured from the part. */
+/** "compliant", "elastic": what pushes back where another part presses on it, and how large it is.
+ What is not stated is measured from the part. */
 struct StatedElastic {
   std::string part;                          ///< Occurrences of this name or path.
   std::optional<product::ElasticKind> kind;  ///< Found from name and form where it is not stated.

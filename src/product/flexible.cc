@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "product/bearable_strain.h"
 #include "product/product.h"
+#include "product/ring_shape.h"
 #include "product/words.h"
 
 namespace hvas::product {
@@ -94,9 +96,9 @@ constexpr std::array<FlexibleWord, 81> kFlexibleWords{{
     {"leitung", FlexibleKind::kCable},
     {"hose", FlexibleKind::kCable},
     {"schlauch", FlexibleKind::kCable},
-    {"belt", FlexibleKind::kCable},
-    {"zahnriemen", FlexibleKind::kCable},
-    {"riemen", FlexibleKind::kCable},
+    {"belt", FlexibleKind::kBelt},
+    {"zahnriemen", FlexibleKind::kBelt},
+    {"riemen", FlexibleKind::kBelt},
     {"zip tie", FlexibleKind::kCable},
     {"cable tie", FlexibleKind::kCable},
     {"kabelbinder", FlexibleKind::kCable},
@@ -113,10 +115,6 @@ constexpr std::array<std::string_view, 46> kStiffThings{
     "block",     "body",   "clamp",    "channel", "tray",      "runner", "post",     "collar",
     "plug",      "drum",   "nipple",   "fitting", "connector", "wheel",  "terminal", "lug",
     "socket",    "flange", "coupling", "adapter", "barb",      "end"};
-
-// Open rings that are clamped flat, not opened: spring lock washers.
-constexpr std::array<std::string_view, 6> kWasherWords{"washer",    "lockwasher", "scheibe",
-                                                       "federring", "rondelle",   "rosetta"};
 
 constexpr std::array<std::string_view, 13> kElasticMaterials{
     "rubber", "gummi", "nbr", "fkm",  "viton",   "silicon rubber", "silicone",
@@ -149,9 +147,12 @@ bool IsORing(const Part& part) {
          });
 }
 
+// What is open by more than 144 degrees holds no shaft: a choice.
+constexpr double kWidestSplit = 0.8 * std::numbers::pi;
+
 /** A flat ring that is open: a hole and a rim about one axis that cover most of the turn. */
 bool IsOpenRing(const Part& part) {
-  constexpr double kLeast = 1.2 * std::numbers::pi;  // 216 degrees: less holds no shaft. A choice.
+  constexpr double kLeast = 2 * std::numbers::pi - kWidestSplit;  // What a gap leaves.
   constexpr double kMost = 1.97 * std::numbers::pi;  // 355 degrees: less is open. A choice.
   constexpr double kFlat = 0.15;  // Thickness over diameter; DIN 471 has at most 0.13.
   if (LeastExtent(part) > kFlat * LargestExtent(part)) {
@@ -167,13 +168,27 @@ bool IsOpenRing(const Part& part) {
   return has_open(FeatureKind::kHole) && has_open(FeatureKind::kShaft);
 }
 
-/** The default allowances, with their sources, are in docs/algorithms/flexible.md [m]. */
+/** How far a split ring gives until its strain is what it bears [m]. */
+double CalcMostOpening(const RingShape& ring, const Material& material) {
+  const double r = ring.mean_radius();
+  const double curvature = 1 / r - 2 * FindBearableRingStrain(material) / ring.width();
+  return curvature > 0 ? 1 / curvature - r : ring.outer;
+}
+
+std::optional<FlexiblePart> MakeFlexible(FlexibleKind kind, const Part& part, std::string reason) {
+  const double allowance = CalcAllowance(kind, part);
+  if (!(allowance > 0) || !std::isfinite(allowance)) {
+    return std::nullopt;
+  }
+  return FlexiblePart{{}, kind, allowance, std::move(reason)};
+}
+
+}  // namespace
+
 double CalcAllowance(FlexibleKind kind, const Part& part) {
   constexpr double kMostStretch = 0.25;      // Of an O-ring's inner diameter, to each side.
   constexpr double kRingOpening = 0.1;       // Of the ring's diameter, to each side.
   constexpr double kLeastOpening = 0.3e-3;   // [m]: rings below 6 mm open by more.
-  constexpr double kUndercut = 0.1;          // Of the length of a part with hooks, or of a clip.
-  constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
   constexpr double kSqueeze = 0.5;           // Of the thickness of a gasket.
   constexpr double kSpread = 0.25;           // Of the radial height of a lip seal: its lip.
   constexpr double kLargestSpread = 1.5e-3;  // [m]: lips are 1 to 2 mm narrower in diameter.
@@ -187,8 +202,6 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
                       kMostStretch * (LargestExtent(part) - 2 * LeastExtent(part)));
     case FlexibleKind::kRetainingRing:
       return std::max(kLeastOpening, kRingOpening * LargestExtent(part));
-    case FlexibleKind::kSnapHook:
-      return std::min(kLargestUndercut, kUndercut * LargestExtent(part));
     case FlexibleKind::kGasket:
       return kSqueeze * LeastExtent(part);
     case FlexibleKind::kLipSeal:
@@ -198,25 +211,18 @@ double CalcAllowance(FlexibleKind kind, const Part& part) {
     case FlexibleKind::kSpring:
       return kCoil * LeastExtent(part);
     case FlexibleKind::kCable:
+    case FlexibleKind::kBelt:
       return std::min(LeastExtent(part), kMostBend);
     case FlexibleKind::kRivet:
       return kHead * LargestExtent(part);
+    case FlexibleKind::kSnapHook:
+    case FlexibleKind::kGrooveRing:
     case FlexibleKind::kForm:
     case FlexibleKind::kStated:
       break;
   }
   return 0;
 }
-
-std::optional<FlexiblePart> MakeFlexible(FlexibleKind kind, const Part& part, std::string reason) {
-  const double allowance = CalcAllowance(kind, part);
-  if (!(allowance > 0) || !std::isfinite(allowance)) {
-    return std::nullopt;
-  }
-  return FlexiblePart{{}, kind, allowance, std::move(reason)};
-}
-
-}  // namespace
 
 const char* ToString(FlexibleKind kind) {
   switch (kind) {
@@ -240,6 +246,10 @@ const char* ToString(FlexibleKind kind) {
       return "a wall that bends";
     case FlexibleKind::kLipSeal:
       return "lip seal";
+    case FlexibleKind::kGrooveRing:
+      return "closed ring in a groove";
+    case FlexibleKind::kBelt:
+      return "belt";
     case FlexibleKind::kStated:
       break;
   }
@@ -260,31 +270,49 @@ std::optional<FlexibleKind> FindFlexibleKind(std::string_view name) {
   return found == kFlexibleWords.end() ? std::nullopt : std::optional(found->kind);
 }
 
+bool IsRubber(const Material& material) {
+  return HasOneOf(FoldName(material.name), kElasticMaterials);
+}
+
 std::optional<FlexiblePart> ClassifyFlexibleByWords(const Part& part) {
   if (const auto kind = FindFlexibleKind(part.name)) {
     return MakeFlexible(*kind, part, "its name");
   }
-  const FlexibleKind of_rubber = IsORing(part) ? FlexibleKind::kORing : FlexibleKind::kRubber;
-  if (HasOneOf(FoldName(part.material.name), kElasticMaterials)) {
-    return MakeFlexible(of_rubber, part, "its material " + part.material.name);
+  if (IsRubber(part.material)) {
+    return MakeFlexible(FlexibleKind::kRubber, part, "its material " + part.material.name);
   }
   if (HasOneOf(FoldName(part.name), kElasticMaterials)) {
-    return MakeFlexible(of_rubber, part, "the material in its name");
+    return MakeFlexible(FlexibleKind::kRubber, part, "the material in its name");
+  }
+  return std::nullopt;
+}
+
+std::optional<FlexiblePart> ClassifyFlexibleByForm(const Part& part) {
+  if (IsORing(part)) {
+    return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");
+  }
+  const std::optional<RingShape> ring = FindRingShape(part);
+  if (ring && ring->gap > 0 && ring->gap < kWidestSplit) {
+    auto split = MakeFlexible(FlexibleKind::kRetainingRing, part, "its form, a split ring");
+    if (split) {
+      split->allowance = std::min(split->allowance, CalcMostOpening(*ring, part.material));
+    }
+    return split;
+  }
+  if (IsOpenRing(part)) {
+    return MakeFlexible(FlexibleKind::kRetainingRing, part, "its form, an open flat ring");
   }
   return std::nullopt;
 }
 
 std::optional<FlexiblePart> ClassifyFlexible(const Part& part) {
-  if (auto by_words = ClassifyFlexibleByWords(part)) {
-    return by_words;
-  }
-  if (IsORing(part)) {
-    return MakeFlexible(FlexibleKind::kORing, part, "its form, a ring of round section");
-  }
-  if (IsOpenRing(part) && !HasOneOf(FoldName(part.name), kWasherWords)) {
-    return MakeFlexible(FlexibleKind::kRetainingRing, part, "its form, an open flat ring");
-  }
-  return std::nullopt;
+  auto by_form = ClassifyFlexibleByForm(part);
+  return by_form ? by_form : ClassifyFlexibleByWords(part);
+}
+
+bool IsStatedRigid(const Product& product, OccurrenceId id) {
+  const FlexiblePart* stated = FindFlexible(product, id);
+  return stated != nullptr && stated->allowance == 0;
 }
 
 const FlexiblePart* FindFlexible(const Product& product, OccurrenceId id) {

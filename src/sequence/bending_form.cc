@@ -4,11 +4,15 @@
 #include <limits>
 
 #include "fits/elastic_parts.h"
+#include "product/bearable_strain.h"
+#include "product/flexible.h"
 #include "product/mesh_ray.h"
 #include "spatial/pose.h"
 
 namespace hvas::sequence {
 namespace {
+
+using product::OccurrenceId;
 
 constexpr double kMostThickness = 1.0 / 3;  // Of the length; beams are slender: a choice.
 
@@ -48,13 +52,84 @@ std::optional<Bending> FindBending(const product::Product& product, product::Occ
                  p_W + inner->distance * inward_W};
 }
 
-bool HasRoomToBend(const product::Product& product, product::OccurrenceId other,
-                   const Vec3& p_back_W, const Vec3& inward_W, double deflection) {
+namespace {
+
+/** A wall that would bend aside, and where it is on the way. */
+struct BendingWall {
+  OccurrenceId part;
+  Vec3 p_back_W;      // Its far side, while the two meet.
+  Vec3 inward_W;      // Unit, where it bends.
+  double deflection;  // [m]
+};
+
+/** Looks for what a wall would come to: along a line that begins before its far side, as what it
+ meets may lie in it there. */
+std::optional<NoRoom> FindNoRoom(const product::Product& product, const SideMeeting& meeting,
+                                 const BendingWall& wall, const std::vector<bool>& is_present) {
   constexpr double kAround = 1.5;  // Of the deflection: what overlaps lies before the far side.
-  const spatial::Pose X_BW = product.occurrences[other.index()].X_WB.Inverse();
-  const Vec3 p_W = p_back_W - kAround * deflection * inward_W;
-  return !product::IsBlocked(product.part_of(other), X_BW * p_W, X_BW.q() * inward_W,
-                             2 * kAround * deflection);
+  const double before = kAround * wall.deflection;
+  std::optional<NoRoom> nearest;
+  for (const product::Occurrence& occurrence : product.occurrences) {
+    if (occurrence.id == wall.part ||
+        (!is_present[occurrence.id.index()] && occurrence.id != meeting.moved)) {
+      continue;
+    }
+    const bool is_moved = occurrence.id == meeting.moved;
+    const Vec3 travel_W = is_moved ? Vec3(meeting.travelled * meeting.way_W) : Vec3::Zero();
+    const spatial::Pose X_BW = occurrence.X_WB.Inverse();
+    const Vec3 p_B = X_BW * Vec3(wall.p_back_W - before * wall.inward_W - travel_W);
+    const product::Part& part = product.part_of(occurrence.id);
+    spatial::Box reach = part.box_B;
+    reach.low.array() -= 2 * before;
+    reach.high.array() += 2 * before;
+    if ((p_B.array() < reach.low.array()).any() || (p_B.array() > reach.high.array()).any()) {
+      continue;
+    }
+    const auto hit = product::FindFirstHit(part, p_B, X_BW.q() * wall.inward_W, 2 * before);
+    const double free = hit ? std::max(0.0, hit->distance - before) : 0;
+    if (hit && (!nearest || free < nearest->free)) {
+      nearest = NoRoom{wall.part, occurrence.id, wall.deflection, free};
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+BendingAnswer FindWhatBends(const product::Product& product, const SideMeeting& meeting,
+                            const std::vector<bool>& is_present) {
+  BendingAnswer answer;
+  const Vec3 aside_W =
+      (meeting.nhat_W - meeting.nhat_W.dot(meeting.way_W) * meeting.way_W).normalized();
+  const auto look = [&](OccurrenceId part, const Vec3& inward_W) {
+    // The part that bends is looked at as drawn.
+    const Vec3 moved_W =
+        part == meeting.moved ? Vec3(meeting.travelled * meeting.way_W) : Vec3::Zero();
+    const auto bending =
+        FindBending(product, part, meeting.p_W - moved_W, inward_W, meeting.way_W, meeting.width);
+    if (!bending || bending->strain > FindBearableStrain(product.part_of(part).material)) {
+      return;
+    }
+    const BendingWall wall{part, bending->p_back_W + moved_W, inward_W, meeting.width};
+    if (auto no_room = FindNoRoom(product, meeting, wall, is_present)) {
+      const bool has_more = !answer.no_room || no_room->free > answer.no_room->free;
+      answer.no_room = has_more ? no_room : answer.no_room;
+    } else if (!answer.bends || bending->strain < answer.bends->bending.strain) {
+      answer.bends = WhatBends{part, *bending, inward_W.dot(meeting.nhat_W) > 0 ? 1.0 : -1.0};
+    }
+  };
+  for (const OccurrenceId part : {meeting.moved, meeting.other}) {
+    if (!IsStatedRigid(product, part)) {
+      // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked
+      // at.
+      look(part, aside_W);
+      look(part, -aside_W);
+    }
+  }
+  if (answer.bends) {
+    answer.no_room.reset();
+  }
+  return answer;
 }
 
 }  // namespace hvas::sequence

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "product/product.h"
 
 namespace hvas::sequence {
-
-/** Strain that the root of a wall or an arm of plastic bears once: polycarbonate; most others bear
- more. Source: Bayer MaterialScience, Snap-Fit Joints for Plastics, table of permissible strains. */
-inline constexpr double kBearableStrain = 0.04;
 
 /** A wall or an arm of a part that has to bend aside. */
 struct Bending {
@@ -30,10 +27,44 @@ struct Bending {
                                                  const Vec3& inward_W, const Vec3& way_W,
                                                  double deflection);
 
-/** Whether another part leaves a wall the room to bend into: within one and a half times the
- deflection of its far side, nothing of the other part is met.
- @param p_back_W  Far side of the wall, with the other part as drawn. @param inward_W  Unit. */
-[[nodiscard]] bool HasRoomToBend(const product::Product& product, product::OccurrenceId other,
-                                 const Vec3& p_back_W, const Vec3& inward_W, double deflection);
+/** Where two parts meet sideways on a straight way, deeper than they may. */
+struct SideMeeting {
+  product::OccurrenceId moved;  ///< The one on its way; the other is where it is drawn.
+  product::OccurrenceId other;
+  Vec3 p_W{Vec3::Zero()};      ///< Place of contact.
+  Vec3 nhat_W{Vec3::UnitX()};  ///< Normal of contact, out of `other`.
+  Vec3 way_W{Vec3::UnitZ()};   ///< Unit, along which `moved` goes.
+  double travelled{0};         ///< How far it has gone there [m].
+  double width{0};             ///< How far one of the two has to bend [m].
+};
+
+/** A part that bends where two parts meet. */
+struct WhatBends {
+  product::OccurrenceId part;
+  Bending bending;
+  double inward_sign{1};  ///< 1 where the normal of contact points into the part, else -1.
+};
+
+/** A wall that would bear to bend, but has no room behind it. */
+struct NoRoom {
+  product::OccurrenceId part;     ///< What would bend.
+  product::OccurrenceId against;  ///< What it would come to.
+  double needed{0};               ///< [m]
+  double free{0};                 ///< How far it can bend [m].
+};
+
+/** What comes of it where two parts meet sideways. */
+struct BendingAnswer {
+  std::optional<WhatBends> bends;  ///< The one with the least strain; none: neither bears it.
+  std::optional<NoRoom> no_room;   ///< Where none bends: what would, with the most room.
+};
+
+/** Finds which of two parts that meet sideways bends aside: one that is not stated to be rigid, is
+ a wall there (FindBending), bears the strain (product::FindBearableStrain), and has one and a half
+ times the room that it needs behind it, before any part that is present.
+ @param is_present  By occurrence. */
+[[nodiscard]] BendingAnswer FindWhatBends(const product::Product& product,
+                                          const SideMeeting& meeting,
+                                          const std::vector<bool>& is_present);
 
 }  // namespace hvas::sequence

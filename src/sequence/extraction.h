@@ -11,6 +11,7 @@
 #include "contact/scene.h"
 #include "paths/path.h"
 #include "paths/way.h"
+#include "sequence/bending_form.h"
 #include "sequence/face_reliefs.h"
 #include "sequence/giving_force.h"
 #include "sequence/search_budget.h"
@@ -123,14 +124,15 @@ class Extraction {
   [[nodiscard]] std::optional<SequenceStep> TryRemoveGiving(Unit* rest, const Unit& deferred);
 
   /** Takes out the first of these parts that can go where a wall or an arm bends aside, of it or of
-   what is in its way, by no more than its form bears (bending_form.h), and erases it from them: a
-   last resort, for hooks and beads that no name tells of. Parts that are stated to be rigid do not
-   bend.
+   what is in its way, by no more than its form bears (bending_form.h), and erases it from them.
+   Where a brief search finds a way that turns, it goes along that one instead. Parts that are
+   stated to be rigid do not bend.
    @param deferred  Sorted; parts that are tried after all others. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveBending(Unit* rest, const Unit& deferred);
 
-  /** Takes out the first of these parts that only their form says to give, as a ring of round
-   section, and that can go along a way that turns without giving. Each is looked at once, briefly.
+  /** Takes out the first of these rings of round section that can go along a way that turns without
+   giving: links of a chain, as no file says that they are of rubber. Each is looked at once,
+   briefly.
    @param deferred  As of TryRemoveTurning(). */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveRing(Unit* rest, const Unit& deferred);
 
@@ -207,6 +209,10 @@ class Extraction {
   /** Explains why TryRemoveOne did not find a way out for a part. */
   [[nodiscard]] std::string ExplainStuck(product::OccurrenceId id) const;
 
+  /** Explains that a part would go if a wall bent that has no room to; empty where none is known.
+   */
+  [[nodiscard]] std::string ExplainBending(product::OccurrenceId id) const;
+
   /** Explains that a part meets an obstacle, with both diameters where a shaft of one would have to
    pass a smaller hole of the other. */
   [[nodiscard]] std::string ExplainObstacle(product::OccurrenceId id, const Obstacle& obstacle,
@@ -244,20 +250,20 @@ class Extraction {
     kByClearance,  ///< Parts of TryRemoveCleared are smaller all over.
   };
 
-  /** What a part meets of another one on its way out. */
-  struct Meeting {
-    double depth{0};  ///< Largest depth of contact [m].
-    /** The deepest contact whose normal is across the way, at the drawn place of the other part;
-     its distance is 0 where there is none. */
-    contact::Contact sideways{};
+  /** A contact with a normal across the way, at the drawn place of the other part. */
+  struct MeetingSide {
+    contact::Contact contact{};
     double travelled{0};  ///< Where on the way it is [m].
   };
 
-  /** A part that bends when it meets another one. */
-  struct WhatBends {
-    product::OccurrenceId part;
-    Bending bending;
-    double inward_sign{1};  ///< 1 where the normal of contact points into the part, else -1.
+  /** What a part meets of another one on its way out. */
+  struct Meeting {
+    double depth{0};                 ///< Largest depth of contact [m].
+    std::vector<MeetingSide> sides;  ///< The deepest contact of each direction of normals.
+
+    void Add(const MeetingSide& side);
+    /** The deepest side; its distance is 0 where there is none. */
+    [[nodiscard]] MeetingSide deepest() const;
   };
 
   /** What was tried last, so that it is tried again only when something has changed. */
@@ -285,7 +291,6 @@ class Extraction {
   [[nodiscard]] bool MayGive(product::OccurrenceId id) const;
   /** How far two parts may give when they pass one another [m]. */
   [[nodiscard]] double CalcGiveLimit(product::OccurrenceId id, product::OccurrenceId other) const;
-  [[nodiscard]] bool IsStatedRigid(product::OccurrenceId id) const;
   /** Takes out the first part of `rest` that can go while parts give. */
   [[nodiscard]] std::optional<SequenceStep> TryRemoveWith(Giving giving, Unit* rest,
                                                           const Unit& deferred);
@@ -305,11 +310,20 @@ class Extraction {
   /** What a part meets on its way out. @pre It is in the unit. */
   [[nodiscard]] std::map<product::OccurrenceId, Meeting> MeasureMeetings(product::OccurrenceId id,
                                                                          const Vec3& direction);
-  /** Which of two parts bends when they meet; none where neither bears it. */
-  [[nodiscard]] std::optional<WhatBends> FindWhatBends(product::OccurrenceId id,
-                                                       product::OccurrenceId other,
-                                                       const Meeting& meeting,
-                                                       const Vec3& direction, double width) const;
+  /** Which of two parts bends where they meet; none where neither bears it, or has room. */
+  [[nodiscard]] BendingAnswer FindWhatBends(product::OccurrenceId id, product::OccurrenceId other,
+                                            const MeetingSide& side, const Vec3& direction,
+                                            double width) const;
+  /** Whether one of two parts bends where they meet deepest, and has room wherever it would have
+   to. Notes where it has none. */
+  [[nodiscard]] bool MayBend(product::OccurrenceId id, product::OccurrenceId other,
+                             const Meeting& meeting, const Vec3& direction, double width);
+  /** Whether one of two parts is known to give so far [m]. */
+  [[nodiscard]] bool GivesAsKnown(product::OccurrenceId id, product::OccurrenceId other,
+                                  double width) const;
+  /** A way that turns, of a part that would go if walls bent: it is looked for briefly, once among
+   the same parts. The part is not present. */
+  [[nodiscard]] std::optional<SequenceStep> FindRigidWay(product::OccurrenceId id);
   /** How far a part and another one overlap across the way, all along it. */
   [[nodiscard]] GivingSamples SampleGiving(product::OccurrenceId id, product::OccurrenceId other,
                                            bool gives_itself, const Vec3& direction);
@@ -380,7 +394,8 @@ class Extraction {
   std::vector<Memory> giving_memories_;                      // by occurrence
   std::map<Unit, Memory> unit_memories_;
   FaceReliefs reliefs_;
-  std::vector<Memory> bending_memories_;  // by occurrence
+  std::vector<Memory> bending_memories_;              // by occurrence
+  std::map<product::OccurrenceId, NoRoom> no_rooms_;  // By the part that cannot go.
 
   /** A search for a way that turns that found none. */
   struct Search {

@@ -7,6 +7,11 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "product/bearable_strain.h"
+#include "product/ring_shape.h"
 #include "sequence/bending_form.h"
 #include "sequence/bent_arms.h"
 #include "sequence/extraction.h"
@@ -19,14 +24,70 @@ namespace {
 using product::MateKind;
 using product::OccurrenceId;
 
-// What a wall or an arm that no name tells of may be bent aside at most: as a named snap hook.
+// How far a wall or an arm is bent aside at most, whatever its strain is: choices.
 constexpr double kUndercut = 0.05;         // Of the longest side of the smaller part.
-constexpr double kLargestUndercut = 2e-3;  // [m]: a choice.
+constexpr double kLargestUndercut = 5e-3;  // [m]
 constexpr double kSideways = 0.5;          // Normals within 30 degrees of across the way: a choice.
+constexpr double kDownwards = -0.5;        // Within 60 degrees of down: a choice.
 // Share of an O-ring's section; usual glands squeeze it by 10 to 30 %. A choice.
 constexpr double kMostSqueeze = 0.4;
 
+bool IsGivingRing(const product::Product& product, OccurrenceId id) {
+  const product::FlexiblePart* flexible = FindFlexible(product, id);
+  return flexible != nullptr && (flexible->kind == product::FlexibleKind::kRetainingRing ||
+                                 flexible->kind == product::FlexibleKind::kGrooveRing ||
+                                 flexible->kind == product::FlexibleKind::kORing);
+}
+
+/** How far one of two parts has to give, as CalcGivingWidth() has it: on a grid by the width
+ itself, where it is within the limit. */
+double MeasureWidth(const product::Product& product, OccurrenceId moving, OccurrenceId other,
+                    const Vec3& way_W, double limit) {
+  constexpr double kFinest = 0.1e-3;  // [m]: parts give by a tenth of a millimetre or more.
+  constexpr double kShare = 0.25;     // Of the width, so that it is good to a twentieth. A choice.
+  const double width = CalcGivingWidth(product, moving, other, way_W, limit);
+  return width > 0 && width < limit
+             ? CalcGivingWidth(product, moving, other, way_W, std::max(kShare * width, kFinest))
+             : width;
+}
+
+/** Notes how far a part that bends or opens is strained, and what it bears. */
+void NoteStrain(const product::Product& product, const WhatBends* arm, GivingPair* give) {
+  const product::Part& part = product.part_of(give->flexible);
+  const auto ring = give->kind == product::FlexibleKind::kRetainingRing
+                        ? product::FindRingShape(part)
+                        : std::nullopt;
+  if (ring) {
+    give->strain = product::CalcOpeningStrain(*ring, give->width);
+    give->bearable_strain = product::FindBearableRingStrain(part.material);
+  } else if (give->kind == product::FlexibleKind::kForm && arm != nullptr &&
+             arm->part == give->flexible) {
+    give->strain = arm->bending.strain;
+    give->bearable_strain = product::FindBearableStrain(part.material);
+  }
+}
+
 }  // namespace
+
+void Extraction::Meeting::Add(const MeetingSide& side) {
+  constexpr double kSameSide = 0.7;  // Cosine: normals within 45 degrees are of one leg. A choice.
+  const auto known = std::find_if(sides.begin(), sides.end(), [&](const MeetingSide& other) {
+    return other.contact.nhat_W.dot(side.contact.nhat_W) > kSameSide;
+  });
+  if (known == sides.end()) {
+    sides.push_back(side);
+  } else if (side.contact.distance < known->contact.distance) {
+    *known = side;
+  }
+}
+
+Extraction::MeetingSide Extraction::Meeting::deepest() const {
+  const auto deepest =
+      std::min_element(sides.begin(), sides.end(), [](const MeetingSide& a, const MeetingSide& b) {
+        return a.contact.distance < b.contact.distance;
+      });
+  return deepest == sides.end() ? MeetingSide() : *deepest;
+}
 
 bool Extraction::MayPass(const MateView& view, OccurrenceId id, const Vec3& direction) const {
   const bool is_wall =
@@ -35,19 +96,21 @@ bool Extraction::MayPass(const MateView& view, OccurrenceId id, const Vec3& dire
          (is_wall || IsAcrossOpenAxis(view, direction));
 }
 
-bool Extraction::IsStatedRigid(OccurrenceId id) const {
-  const product::FlexiblePart* stated = FindFlexible(product_, id);
-  return stated != nullptr && stated->allowance == 0;
-}
-
 double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
   if (giving_ == Giving::kByClearance) {
     return is_cleared_[other.index()] ? clearance_ : 0;
   }
-  const double known = input_.give_limits.empty() ? 0.0
-                                                  : std::max(input_.give_limits[id.index()],
-                                                             input_.give_limits[other.index()]);
-  if (giving_ != Giving::kByForm || (IsStatedRigid(id) && IsStatedRigid(other))) {
+  double known = 0;
+  if (!input_.give_limits.empty()) {
+    const double own = input_.give_limits[id.index()];
+    const double others = input_.give_limits[other.index()];
+    // What is put over a land is not put over a ring beside it.
+    const bool are_rings =
+        own > 0 && others > 0 && IsGivingRing(product_, id) && IsGivingRing(product_, other);
+    known = are_rings ? 0 : std::max(own, others);
+  }
+  if (giving_ != Giving::kByForm ||
+      (IsStatedRigid(product_, id) && IsStatedRigid(product_, other))) {
     return giving_ == Giving::kNone ? 0 : known;
   }
   const auto longest = [this](OccurrenceId part) {
@@ -55,6 +118,13 @@ double Extraction::CalcGiveLimit(OccurrenceId id, OccurrenceId other) const {
   };
   return std::max(known,
                   std::min(kLargestUndercut, kUndercut * std::min(longest(id), longest(other))));
+}
+
+bool Extraction::GivesAsKnown(OccurrenceId id, OccurrenceId other, double width) const {
+  const double limit = input_.give_limits.empty() ? 0.0
+                                                  : std::max(input_.give_limits[id.index()],
+                                                             input_.give_limits[other.index()]);
+  return limit > 0 && width <= limit;
 }
 
 bool Extraction::MayGive(OccurrenceId id) const {
@@ -75,7 +145,9 @@ bool Extraction::MayGive(OccurrenceId id) const {
 std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
                                                       const Unit& deferred) {
   std::vector<Memory>& memories = giving == Giving::kByForm ? bending_memories_ : giving_memories_;
-  for (const bool is_deferred : {false, true}) {
+  // What can be put in from above is: the product is not turned over for a ring.
+  for (const auto& [is_deferred, may_go_down] :
+       {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
     for (std::size_t i = 0; i + 1 < rest->size(); ++i) {
       const OccurrenceId id = (*rest)[i];
       if ((giving == Giving::kAsKnown && !MayGive(id)) ||
@@ -85,8 +157,17 @@ std::optional<SequenceStep> Extraction::TryRemoveWith(Giving giving, Unit* rest,
       giving_ = giving;
       std::optional<SequenceStep> step = TryRemove({id}, &memories[id.index()]);
       giving_ = Giving::kNone;
+      if (step && !may_go_down && step->extraction_W.z() < kDownwards) {
+        SetPresent({id}, true);
+        memories[id.index()] = {};
+        continue;
+      }
       if (step) {
-        NoteGives(id, step->extraction_W);
+        if (auto rigid = giving == Giving::kByForm ? FindRigidWay(id) : std::nullopt) {
+          step = std::move(rigid);
+        } else {
+          NoteGives(id, step->extraction_W);
+        }
         rest->erase(rest->begin() + static_cast<std::ptrdiff_t>(i));
         return step;
       }
@@ -135,51 +216,55 @@ std::map<OccurrenceId, Extraction::Meeting> Extraction::MeasureMeetings(Occurren
     }
     Meeting& meeting = meetings[OccurrenceId(contact.body.index())];
     meeting.depth = std::max(meeting.depth, -contact.distance);
-    if (std::abs(contact.nhat_W.dot(direction)) < kSideways &&
-        contact.distance < meeting.sideways.distance) {
-      meeting.sideways = contact;
-      meeting.travelled = travelled;
+    if (contact.distance < 0 && std::abs(contact.nhat_W.dot(direction)) < kSideways) {
+      meeting.Add({contact, travelled});
     }
   });
   return meetings;
 }
 
-std::optional<Extraction::WhatBends> Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
-                                                               const Meeting& meeting,
-                                                               const Vec3& direction,
-                                                               double width) const {
-  if (!(meeting.sideways.distance < 0)) {
-    return std::nullopt;  // It would have to be pushed through, not aside.
+BendingAnswer Extraction::FindWhatBends(OccurrenceId id, OccurrenceId other,
+                                        const MeetingSide& side, const Vec3& direction,
+                                        double width) const {
+  if (!(side.contact.distance < 0)) {
+    return {};  // It would have to be pushed through, not aside.
   }
-  const Vec3& p_W = meeting.sideways.p_WC;
-  const Vec3& nhat_W = meeting.sideways.nhat_W;
-  const Vec3 aside_W = (nhat_W - nhat_W.dot(direction) * direction).normalized();
-  const Vec3 travel_W = meeting.travelled * direction;
-  // The part that bends is looked at as drawn, and so is the one that it must have room beside.
-  std::optional<WhatBends> least;
-  const auto look = [&](OccurrenceId part, OccurrenceId beside, const Vec3& moved_W,
-                        const Vec3& inward_W) {
-    const auto bending =
-        sequence::FindBending(product_, part, p_W - moved_W, inward_W, direction, width);
-    const Vec3 moved_beside_W = travel_W - moved_W;
-    if (bending && bending->strain <= kBearableStrain &&
-        (!least || bending->strain < least->bending.strain) &&
-        HasRoomToBend(product_, beside, bending->p_back_W + moved_W - moved_beside_W, inward_W,
-                      width)) {
-      least = WhatBends{part, *bending, inward_W.dot(nhat_W) > 0 ? 1.0 : -1.0};
+  return sequence::FindWhatBends(
+      product_,
+      {id, other, side.contact.p_WC, side.contact.nhat_W, direction, side.travelled, width},
+      is_present_);
+}
+
+bool Extraction::MayBend(OccurrenceId id, OccurrenceId other, const Meeting& meeting,
+                         const Vec3& direction, double width) {
+  constexpr double kShareOfDeepest = 0.5;  // Another leg is as deep as this, or more. A choice.
+  const MeetingSide deepest = meeting.deepest();
+  bool does_bend = FindWhatBends(id, other, deepest, direction, width).bends.has_value();
+  for (const MeetingSide& side : meeting.sides) {
+    if (side.contact.distance > kShareOfDeepest * deepest.contact.distance) {
+      continue;
     }
-  };
-  for (const bool is_own : {true, false}) {
-    const OccurrenceId part = is_own ? id : other;
-    if (!IsStatedRigid(part)) {
-      // Past the middle of a thin wall, the nearest way out of it leads on: both sides are looked
-      // at.
-      for (const Vec3& inward_W : {aside_W, Vec3(-aside_W)}) {
-        look(part, is_own ? other : id, is_own ? travel_W : Vec3::Zero(), inward_W);
-      }
+    const BendingAnswer answer = FindWhatBends(id, other, side, direction, width);
+    if (answer.no_room) {
+      no_rooms_.try_emplace(id, *answer.no_room);
+      does_bend = false;
     }
   }
-  return least;
+  return does_bend;
+}
+
+std::string Extraction::ExplainBending(OccurrenceId id) const {
+  const auto found = no_rooms_.find(id);
+  if (found == no_rooms_.end() || !is_present_[found->second.against.index()]) {
+    return {};
+  }
+  const NoRoom& no_room = found->second;
+  const bool is_own = no_room.part == id;
+  return fmt::format(
+      "no room to bend: {} would have to bend by {:.2f} mm, and {} leaves {:.2f} mm "
+      "behind it",
+      is_own ? std::string("an arm or wall of it") : "an arm or wall of " + Describe(no_room.part),
+      units::ToMm(no_room.needed), Describe(no_room.against), units::ToMm(no_room.free));
 }
 
 GivingSamples Extraction::SampleGiving(OccurrenceId id, OccurrenceId other, bool gives_itself,
@@ -333,11 +418,27 @@ std::optional<Obstacle> Extraction::FindTooWide(OccurrenceId id, const Vec3& dir
     if (!(limit > 0)) {
       continue;
     }
-    const double width = CalcGivingWidth(product_, id, other, direction, limit);
-    const bool may_bend =
-        giving_ != Giving::kByForm || FindWhatBends(id, other, meeting, direction, width);
+    const double width = MeasureWidth(product_, id, other, direction, limit);
     const bool is_too_wide = width > 0 && width > CalcWidestGiven(id, other, direction, limit);
-    if (is_too_wide || !may_bend) {
+    const bool has_to_bend = giving_ == Giving::kByForm && !GivesAsKnown(id, other, width);
+    Meeting seen = meeting;
+    if (!is_too_wide && has_to_bend && seen.sides.empty()) {
+      // Faces that a fit answers for meet as well where a barb is next to them.
+      contact::QueryOptions query;
+      query.margin = -kDepthTolerance;
+      query.self = contact::BodyId(id.index());
+      const double exit = CalcExitDistance({id}, direction);
+      const double step = CalcStep({id}, exit);
+      VisitContacts(
+          id, direction, query, step, static_cast<int>(exit / step),
+          [&seen, &direction, other = other](const contact::Contact& contact, double travelled) {
+            if (contact.body.is_valid() && OccurrenceId(contact.body.index()) == other &&
+                contact.distance < 0 && std::abs(contact.nhat_W.dot(direction)) < kSideways) {
+              seen.Add({contact, travelled});
+            }
+          });
+    }
+    if (is_too_wide || (has_to_bend && !MayBend(id, other, seen, direction, width))) {
       return Obstacle{other, 0, {}};
     }
   }
@@ -381,9 +482,8 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
       return part == nullptr ? 0.0 : part->allowance;
     };
     const double limit = std::max(limit_of(own), limit_of(others));
-    give.width =
-        CalcGivingWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
-    const auto bending = FindWhatBends(id, other, meeting, direction, give.width);
+    give.width = MeasureWidth(product_, id, other, direction, limit > 0 ? limit : kLargestUndercut);
+    const auto bending = FindWhatBends(id, other, meeting.deepest(), direction, give.width).bends;
     const bool is_known = limit > 0 && give.width <= limit;
     const bool is_own =
         is_known || !bending ? limit_of(own) >= limit_of(others) : bending->part == id;
@@ -394,13 +494,13 @@ void Extraction::NoteGives(OccurrenceId id, const Vec3& direction) {
     give.moved = id;
     const GivingSamples samples = SampleGiving(id, other, give.flexible == id, direction);
     // The nearest way out of a small hook leads along its way: its ramp tells where its arm is.
-    Meeting on_ramp = meeting;
-    on_ramp.sideways = samples.deepest;
-    on_ramp.travelled = samples.travelled;
-    const auto arm = bending ? bending : FindWhatBends(id, other, on_ramp, direction, give.width);
+    const MeetingSide on_ramp{samples.deepest, samples.travelled};
+    const auto arm =
+        bending ? bending : FindWhatBends(id, other, on_ramp, direction, give.width).bends;
     give.curve = MakeGivingCurve(product_, give, samples,
                                  arm && arm->part == give.flexible ? &arm->bending : nullptr);
     NoteForm(samples, arm ? &*arm : nullptr, direction, &give);
+    NoteStrain(product_, arm ? &*arm : nullptr, &give);
     gives_.push_back(give);
     allowances_[id.index()] = ListAllowances(overlaps_, gives_, id);
     allowances_[other.index()] = ListAllowances(overlaps_, gives_, other);

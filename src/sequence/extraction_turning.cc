@@ -175,8 +175,10 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(
 
 std::optional<SequenceStep> Extraction::TryRemoveTurningLong(Unit* rest, const Unit& deferred) {
   Unit tried;
-  std::copy_if(rest->begin(), rest->end() - 1, std::back_inserter(tried),
-               [this](OccurrenceId id) { return !IsHeldFirmly(id); });
+  // What only lacks the room to bend is known to be stuck: it is not searched for long.
+  std::copy_if(
+      rest->begin(), rest->end() - 1, std::back_inserter(tried),
+      [this](OccurrenceId id) { return !IsHeldFirmly(id) && ExplainBending(id).empty(); });
   const auto rank = [&](OccurrenceId id) {
     return std::pair(std::binary_search(deferred.begin(), deferred.end(), id),
                      searches_[id.index()].to_go);
@@ -220,10 +222,21 @@ std::optional<SequenceStep> Extraction::TryRemoveRing(Unit* rest, const Unit& de
   const auto is_ring = [&](OccurrenceId id) {
     const product::FlexiblePart* flexible = product::FindFlexible(product_, id);
     return searches_[id.index()].looks == 0 && flexible != nullptr && flexible->allowance > 0 &&
-           flexible->kind != product::FlexibleKind::kStated &&
-           !product::ClassifyFlexibleByWords(product_.part_of(id));
+           flexible->kind == product::FlexibleKind::kORing &&
+           !product::IsRubber(product_.part_of(id).material);
   };
   return TryRemoveTurning(rest, deferred, std::min(kLooks.front(), input_.way_looks), is_ring);
+}
+
+std::optional<SequenceStep> Extraction::FindRigidWay(OccurrenceId id) {
+  const std::uint64_t budget = std::min({kLooks.front(), input_.way_looks, budget_.left()});
+  SetPresent({id}, true);
+  std::optional<SequenceStep> step;
+  if (!input_.shapes.empty() && budget > 0 && IsWorthSearching(id, budget) && !IsHeldFirmly(id)) {
+    step = FindTurningWay(id, budget);
+  }
+  SetPresent({id}, false);
+  return step;
 }
 
 std::string Extraction::ExplainTurning(OccurrenceId id) const {

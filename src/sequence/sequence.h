@@ -101,6 +101,8 @@ struct GivingPair {
   double width{0};  ///< How far it gives sideways [m] (CalcGivingWidth).
   product::FlexibleKind kind{product::FlexibleKind::kStated};  ///< Why it may.
   product::OccurrenceId moved;                                 ///< The one on its way.
+  double strain{0};           ///< Where it bends or opens: the largest; 0: it is not known.
+  double bearable_strain{0};  ///< What its material bears of it.
   /** What it takes, along the way of the one that is moved; null where no formula is known for it.
    */
   std::shared_ptr<const haptics::GivingCurve> curve;

@@ -111,7 +111,7 @@ class YieldingStrategy final : public Strategy {
 class TurningStrategy final : public Strategy {
  public:
   enum class Effort : std::uint8_t {
-    kRings,  ///< Briefly, and only parts that their form alone says to yield.
+    kRings,  ///< Briefly, and only rings of round section: links of chains.
     kBrief,
     kLong,
   };

@@ -82,11 +82,11 @@ bool ReadFlexible(const Json& json, product::Product* product) {
   }
   const Json& list = json[kFlexible];
   for (const Json& entry : list) {
-    const bool is_entry = entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
-                          entry[0].get<std::uint64_t>() < product->occurrences.size() &&
-                          entry[1].is_number() && entry[2].is_number_unsigned() &&
-                          entry[2].get<std::uint64_t>() <=
-                              static_cast<std::uint64_t>(product::FlexibleKind::kLipSeal);
+    const bool is_entry =
+        entry.is_array() && entry.size() == 3 && entry[0].is_number_unsigned() &&
+        entry[0].get<std::uint64_t>() < product->occurrences.size() && entry[1].is_number() &&
+        entry[2].is_number_unsigned() &&
+        entry[2].get<std::uint64_t>() <= static_cast<std::uint64_t>(product::kLastFlexibleKind);
     if (!is_entry) {
       return false;
     }

@@ -135,7 +135,7 @@ bool Tangles(product::FlexibleKind kind) {
   using product::FlexibleKind;
   return kind == FlexibleKind::kORing || kind == FlexibleKind::kRetainingRing ||
          kind == FlexibleKind::kSpring || kind == FlexibleKind::kCable ||
-         kind == FlexibleKind::kRubber;
+         kind == FlexibleKind::kBelt || kind == FlexibleKind::kRubber;
 }
 
 void RateHandling(const Model& model, const Coming& coming, RatedParts* rated) {

@@ -45,8 +45,9 @@ Arm GuidedHand::MakeArm() {
   Arm arm;
   arm.stiffness = 1000;
   arm.damping = 40;
-  arm.turn_stiffness = 20;
-  arm.turn_damping = 0.35;
+  arm.inertia = 0.02;
+  arm.turn_stiffness = 60;
+  arm.turn_damping = 1.6;
   return arm;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "mates/mate_kind.h"
+#include "product/bearable_strain.h"
 #include "product/flexible.h"
 #include "sequence/thread_way.h"
 #include "sequence/turning_way.h"
@@ -197,6 +198,8 @@ std::vector<PartAllowance> PartRun::ListPartAllowances(const sequence::SequenceS
       allowance.depth = std::max(give.width, give.depth);
       allowance.flexible = give.flexible;
       allowance.flexible_kind = give.kind;
+      allowance.strain = give.strain;
+      allowance.bearable_strain = give.bearable_strain;
       if (give.curve) {
         allowance.force = haptics::CalcGivingPeak(*give.curve);
       }
@@ -221,8 +224,17 @@ std::string PartRun::DescribeAllowance(const PartAllowance& allowance, bool is_b
       allowance.force.in > 0
           ? fmt::format(", {:.3g} N in, {:.3g} N out", allowance.force.in, allowance.force.out)
           : "";
-  return fmt::format("goes in by giving {:.2f} mm ({}{}{})", units::ToMm(allowance.depth),
-                     product::ToString(allowance.flexible_kind), who, force);
+  const std::string strain =
+      allowance.strain > 0 ? fmt::format(", strain {:.2g} % of {:.2g} % that {} bears",
+                                         100 * allowance.strain, 100 * allowance.bearable_strain,
+                                         product::DescribeBearing(
+                                             model().product->part_of(allowance.flexible).material,
+                                             allowance.flexible_kind == product::FlexibleKind::kForm
+                                                 ? "a plastic"
+                                                 : "spring steel"))
+                           : "";
+  return fmt::format("goes in by giving {:.2f} mm ({}{}{}{})", units::ToMm(allowance.depth),
+                     product::ToString(allowance.flexible_kind), who, force, strain);
 }
 
 std::string PartRun::DescribeAllowances(const std::vector<PartAllowance>& allowances) const {

@@ -35,6 +35,8 @@ struct PartAllowance {
   std::vector<std::uint32_t> other_faces;  ///< kDrawn: those of the other part.
   product::OccurrenceId flexible;          ///< kGive: the one that gives.
   product::FlexibleKind flexible_kind{product::FlexibleKind::kStated};  ///< kGive: why it may.
+  double strain{0};           ///< kGive: the largest of what bends; 0 where it is not known.
+  double bearable_strain{0};  ///< kGive: what its material bears of it.
   /** kGive: the largest forces that it takes, in and out, true [N]; 0 where none is known. */
   haptics::GivingPeak force{};
 };

@@ -64,6 +64,10 @@ nlohmann::ordered_json ToJson(const Model& model, const PartAllowance& allowance
       json["force_in_n"] = allowance.force.in;
       json["force_out_n"] = allowance.force.out;
     }
+    if (allowance.strain > 0) {
+      json["strain_percent"] = 100 * allowance.strain;
+      json["bearable_strain_percent"] = 100 * allowance.bearable_strain;
+    }
   }
   return json;
 }

@@ -36,7 +36,8 @@ Result<void> KeepLists(const std::filesystem::path& file, nlohmann::ordered_json
     return Unexpected(read.error());
   }
   const auto old = ParseJson<nlohmann::ordered_json>(*text);
-  for (const char* list : {"mates", "removed", "relations", "contacts", "apart", "flexible"}) {
+  for (const char* list :
+       {"mates", "removed", "relations", "contacts", "apart", "compliant", "flexible", "elastic"}) {
     if (old.is_object() && old.contains(list)) {
       (*document)[list] = old[list];
     }

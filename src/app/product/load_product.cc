@@ -60,7 +60,7 @@ void AddLoadOptions(CLI::App* command, LoadOptions* options, Limited limited) {
   command->add_option("--rigid", options->rigid,
                       "Name or path of a part that may not give on its way although its name, its "
                       "material or its form indicates that it is flexible; all: no part that is "
-                      "not under \"flexible\" in the side file; may be repeated");
+                      "not under \"compliant\" in the side file; may be repeated");
   const CLI::Option* time =
       command
           ->add_option("--time-limit", options->limits.time,

@@ -129,6 +129,9 @@ TEST(SideFileSchema, HasTheKeysTypesAndRangesOfTheReader) {
   ExpectSameKeys(schema, schema["$defs"]["relation"], SideFileObject::kRelation);
   ExpectSameKeys(schema, schema["$defs"]["contact"], SideFileObject::kContact);
   ExpectSameKeys(schema, schema["$defs"]["apart"], SideFileObject::kApart);
+  ExpectSameKeys(schema, schema["$defs"]["compliant"], SideFileObject::kCompliant);
+  ExpectSameKeys(schema, schema["$defs"]["flexible"], SideFileObject::kFlexible);
+  ExpectSameKeys(schema, schema["$defs"]["elastic"], SideFileObject::kElastic);
   ExpectSameKeys(schema, schema["$defs"]["flexible"], SideFileObject::kFlexible);
   ExpectSameKeys(schema, schema["$defs"]["elastic"], SideFileObject::kElastic);
 }

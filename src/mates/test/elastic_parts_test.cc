@@ -144,6 +144,30 @@ TEST(ElasticPartsTest, TheSideFileStatesThem) {
   EXPECT_FALSE(kind);
 }
 
+TEST(ElasticPartsTest, OneSectionOfTheSideFileStatesWhatGivesAndWhatPushesBack) {
+  const auto file = ParseSideFile(R"({"format": "hvas-assignments-2", "compliant": [
+    {"part": "cover", "allowance_mm": 0.6},
+    {"part": "spring", "kind": "coil_spring", "free_length_mm": 30},
+    {"part": "seal", "allowance_mm": 0.4, "modulus_mpa": 8},
+    {"part": "washer"}]})",
+                                  "a.hvas.json");
+  ASSERT_TRUE(file) << file.error().message;
+  ASSERT_EQ(file->flexible.size(), 2U);
+  EXPECT_EQ(file->flexible[0].part, "cover");
+  EXPECT_NEAR(file->flexible[0].allowance, 0.6e-3, 1e-12);
+  EXPECT_EQ(file->flexible[1].part, "seal");
+  ASSERT_EQ(file->elastic.size(), 3U);
+  EXPECT_EQ(file->elastic[0].part, "spring");
+  EXPECT_EQ(file->elastic[1].part, "seal");
+  EXPECT_NEAR(*file->elastic[1].modulus, 8e6, 1e-3);
+  EXPECT_EQ(file->elastic[2].part, "washer");
+  const auto unknown = ParseSideFile(
+      R"({"format": "hvas-assignments-2", "compliant": [{"part": "a", "give_mm": 1}]})",
+      "a.hvas.json");
+  ASSERT_FALSE(unknown);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "give_mm", unknown.error().message);
+}
+
 TEST(ElasticPartsTest, ALipHasAForceOnceItsLengthAndThicknessAreKnown) {
   product::ElasticPart seal;
   seal.kind = ElasticKind::kLipSeal;

@@ -22,8 +22,8 @@ constexpr double kLimit = 120;  // [s] of session time
 haptics::TickOptions GuidedTick(double rate_hz) {
   haptics::TickOptions tick;
   tick.device.max_force = 1.2 * kMostHandForce;
-  tick.device.max_torque = 5;
-  tick.coupling = {4000, 90, 20, 1};
+  tick.device.max_torque = 20;
+  tick.coupling = {4000, 90, 60, 3};
   tick.dt = 1 / rate_hz;
   return tick;
 }
