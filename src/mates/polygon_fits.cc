@@ -26,7 +26,7 @@ constexpr double kTolerance = 2e-6;      // [m]: that of a part's features.
 constexpr double kOffAxis = 50e-6;       // [m] beside the play: what is drawn inexactly. A choice.
 constexpr double kTightest = 0.1e-3;     // [m] by which the inner one may be wider: a press fit.
 constexpr double kWidestPlay = 0.1;      // Of the width: printed pockets have 0.03. A choice.
-constexpr double kParallelForms = 5e-3;  // [rad]
+constexpr double kParallelForms = 5e-3;  // [rad] between the axes of two forms. A choice.
 constexpr double kSameTurn = 0.05;       // [rad] by which flats may be turned to each other: 3 deg.
 constexpr double kLeastEngaged = 0.05;   // Of the width: a choice.
 

@@ -354,8 +354,8 @@ TEST(PitfallF, AHexagonalPocketMakesNoNutAndABoreWithSixFlatsNoScrew) {
   // A ring whose bore has six flats all along is in its seat by a fit.
   Product seat;
   AddRound(&seat, "part 1", FeatureKind::kHole, 14.29e-3, 0, 6e-3);
-  Part* ring = AddRound(&seat, "part 2", FeatureKind::kShaft, 14.28e-3, 0, 20e-3);
-  AddHexagon(ring, 12.7e-3, -1, 0, 20e-3);
+  Part* ring = AddRound(&seat, "part 2", FeatureKind::kShaft, 14.28e-3, 0, 6.35e-3);
+  AddHexagon(ring, 12.7e-3, -1, 0, 6.35e-3);
   AddInPlace(&seat);
   InferInto(&seat);
   ASSERT_EQ(CountMates(seat, MateKind::kAxisHole), 1);

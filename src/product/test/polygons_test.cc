@@ -162,14 +162,14 @@ Part MakeSpline(int teeth, double bottom, double top, double width, bool is_hub)
 }
 
 TEST(Polygons, TeethWithFlatFlanksAreASplineWithTheirNumber) {
-  // ISO 14: 6x23x26, 8x32x36 and 10x72x78, the teeth 6, 6 and 12 mm wide.
+  // ISO 14: 6x23x26, 8x32x36 and 8x52x58, the teeth 6, 6 and 10 mm wide.
   struct Size {
     int teeth;
     double bottom, top, width;
   };
 
   for (const Size& size : {Size{6, 11.5e-3, 13e-3, 6e-3}, Size{8, 16e-3, 18e-3, 6e-3},
-                           Size{10, 36e-3, 39e-3, 12e-3}}) {
+                           Size{8, 26e-3, 29e-3, 10e-3}}) {
     SCOPED_TRACE(size.teeth);
     Part shaft = MakeSpline(size.teeth, size.bottom, size.top, size.width, false);
     const auto found = Find(&shaft);
