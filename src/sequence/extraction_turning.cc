@@ -205,9 +205,12 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
     return TryRemoveTurningLong(rest, deferred);
   }
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
+  const std::uint64_t kept = budget_.total() / 2;  // For what is tried after it: a choice.
   for (const std::uint64_t most : kLooks) {
     const std::uint64_t budget = std::min(most, input_.way_looks);
-    const auto is_worth = [&](OccurrenceId id) { return IsWorthSearching(id, budget); };
+    const auto is_worth = [&](OccurrenceId id) {
+      return budget_.left() > kept && IsWorthSearching(id, budget);
+    };
     if (auto step = TryRemoveTurning(rest, deferred, budget, is_worth)) {
       return step;
     }
