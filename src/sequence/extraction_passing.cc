@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "mates/mate_kind.h"
 #include "paths/path.h"
 #include "sequence/extraction.h"
@@ -222,10 +220,7 @@ std::vector<SequenceStep> Extraction::TryRemovePast(Unit* rest, const Unit& defe
 }
 
 std::string Extraction::ExplainPassing() const {
-  return IsPassingOver() ? fmt::format(
-                               "; the search for a part that can be moved aside was ended "
-                               "after {} queries",
-                               passing_spent_)
+  return IsPassingOver() ? "; the search for a part that can be moved aside was ended"
                          : std::string();
 }
 

@@ -176,9 +176,8 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(
 std::optional<SequenceStep> Extraction::TryRemoveTurningLong(Unit* rest, const Unit& deferred) {
   Unit tried;
   // What only lacks the room to bend is known to be stuck: it is not searched for long.
-  std::copy_if(
-      rest->begin(), rest->end() - 1, std::back_inserter(tried),
-      [this](OccurrenceId id) { return !IsHeldFirmly(id) && ExplainBending(id).empty(); });
+  std::copy_if(rest->begin(), rest->end() - 1, std::back_inserter(tried),
+               [this](OccurrenceId id) { return !IsHeldFirmly(id) && ExplainBending(id).empty(); });
   const auto rank = [&](OccurrenceId id) {
     return std::pair(std::binary_search(deferred.begin(), deferred.end(), id),
                      searches_[id.index()].to_go);
@@ -205,9 +204,12 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(Unit* rest, const Unit&
     return TryRemoveTurningLong(rest, deferred);
   }
   // Most ways are found soon: all parts are looked at briefly before one is looked at for long.
+  const std::uint64_t kept = budget_.total() / 2;  // For what is tried after it: a choice.
   for (const std::uint64_t most : kLooks) {
     const std::uint64_t budget = std::min(most, input_.way_looks);
-    const auto is_worth = [&](OccurrenceId id) { return IsWorthSearching(id, budget); };
+    const auto is_worth = [&](OccurrenceId id) {
+      return budget_.left() > kept && IsWorthSearching(id, budget);
+    };
     if (auto step = TryRemoveTurning(rest, deferred, budget, is_worth)) {
       return step;
     }

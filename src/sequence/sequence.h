@@ -150,7 +150,7 @@ struct Sequence {
 
 /** How many contact queries the search for an order takes in all of a product: half a minute. A
  choice, as a person waits; docs/algorithms/sequence.md has what is lost by it. */
-inline constexpr std::uint64_t kSearchQueries = 2'400'000;
+inline constexpr std::uint64_t kSearchQueries = 1'200'000;
 
 /** How many times as many it takes where somebody asks for it: a choice. */
 inline constexpr std::uint64_t kThoroughness = 10;

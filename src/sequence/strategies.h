@@ -21,7 +21,7 @@ struct Level {
   const Unit* fixtures{nullptr};
   Unit rest;  ///< Parts that are there, the smallest first; the last one is the base, and stays.
   Unit connecting;  ///< Those of which others would hang in the air without them; sorted.
-  std::optional<BlockingGraph> graph;  ///< Of `rest`; made by GraphOf().
+  std::optional<BlockingGraph> graph;  ///< Graph of `rest`; made by GraphOf().
 
   /** `rest`, and the fixtures. */
   [[nodiscard]] Unit WithFixtures() const;

@@ -48,10 +48,13 @@ struct Planned {
     sequence = PlanSequence(input);
   }
 
+  /** Names of what the steps bring in; what is only assumed in its place is none of it. */
   [[nodiscard]] std::vector<std::string> order() const {
     std::vector<std::string> names;
     for (const SequenceStep& step : sequence.steps) {
-      names.push_back(product.occurrences[step.occurrence.index()].name);
+      if (step.kind != SequenceStep::Kind::kAssume) {
+        names.push_back(product.occurrences[step.occurrence.index()].name);
+      }
     }
     return names;
   }
