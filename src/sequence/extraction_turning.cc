@@ -176,9 +176,8 @@ std::optional<SequenceStep> Extraction::TryRemoveTurning(
 std::optional<SequenceStep> Extraction::TryRemoveTurningLong(Unit* rest, const Unit& deferred) {
   Unit tried;
   // What only lacks the room to bend is known to be stuck: it is not searched for long.
-  std::copy_if(
-      rest->begin(), rest->end() - 1, std::back_inserter(tried),
-      [this](OccurrenceId id) { return !IsHeldFirmly(id) && ExplainBending(id).empty(); });
+  std::copy_if(rest->begin(), rest->end() - 1, std::back_inserter(tried),
+               [this](OccurrenceId id) { return !IsHeldFirmly(id) && ExplainBending(id).empty(); });
   const auto rank = [&](OccurrenceId id) {
     return std::pair(std::binary_search(deferred.begin(), deferred.end(), id),
                      searches_[id.index()].to_go);
