@@ -12,6 +12,7 @@
 
 #include "mates/axis_rules.h"
 #include "mates/build_mate.h"
+#include "mates/drawing_errors.h"
 #include "mates/drawn_oddities.h"
 #include "mates/fasteners.h"
 #include "mates/joints.h"
@@ -308,6 +309,8 @@ class Inference {
         mate.fit = ProposeFit(evidence);
       }
     }
+    std::erase_if(product_->mates,
+                  [this](const Mate& mate) { return IsBeyondAnyFit(*product_, mate); });
   }
 
   void Finish() {

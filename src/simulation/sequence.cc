@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "mates/drawing_errors.h"
 #include "simulation/base_choice.h"
 #include "simulation/blocking_graph.h"
 #include "simulation/extraction.h"
@@ -51,10 +52,16 @@ class Planner {
    else there, then set aside until its turn. */
   void PutAside(const Unit& unit, SequenceStep step, Unit* rest, std::vector<SequenceStep>* removed,
                 Sequence* sequence);
-  /** Gives up the part whose absence lets most others come out, or the smallest: it is assumed to
-   come out. */
+  /** Gives up a part: it is assumed to come out. */
+  void GiveUp(OccurrenceId id, std::string reason, Unit* rest, std::vector<SequenceStep>* removed,
+              Sequence* sequence);
+  /** Gives up the part whose absence lets most others come out, or the smallest. */
   void GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceStep>* removed,
                  Sequence* sequence);
+  /** Gives up one part of a pair that is drawn in one another (product::DrawingError), for which no
+   further way is searched. False where there is no such pair. */
+  [[nodiscard]] bool GiveUpError(Unit* rest, std::vector<SequenceStep>* removed,
+                                 Sequence* sequence);
   /** Parts of which others would hang in the air if they came out before them, sorted. */
   [[nodiscard]] Unit ListConnecting(const Unit& rest) const;
   /** Parts of `rest` that are connected with what stays only by this one: what stays are the base
@@ -192,6 +199,11 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceSt
     reason += fmt::format("; of the ways of parts that might come out together, only {} were tried",
                           BlockingGraph::kMostWays);
   }
+  GiveUp(id, std::move(reason), rest, removed, sequence);
+}
+
+void Planner::GiveUp(OccurrenceId id, std::string reason, Unit* rest,
+                     std::vector<SequenceStep>* removed, Sequence* sequence) {
   sequence->gaps.push_back({id, std::move(reason)});
   SequenceStep assumed;
   assumed.kind = SequenceStep::Kind::kAssume;
@@ -199,6 +211,32 @@ void Planner::GiveUpOne(BlockingGraph* graph, Unit* rest, std::vector<SequenceSt
   removed->push_back(std::move(assumed));
   extraction_.SetPresent({id}, false);
   std::erase(*rest, id);
+}
+
+bool Planner::GiveUpError(Unit* rest, std::vector<SequenceStep>* removed, Sequence* sequence) {
+  const Unit present = WithFixtures(*rest);
+  const auto is_in = [](const Unit& unit, OccurrenceId id) {
+    return std::find(unit.begin(), unit.end(), id) != unit.end();
+  };
+  // Of a chain of pairs the largest part that has to go, so that few have to.
+  const product::DrawingError* found = nullptr;
+  OccurrenceId out;
+  for (const product::DrawingError& error : product_.drawing_errors) {
+    const OccurrenceId smaller = mates::SmallerOf(product_, error);
+    const bool can_go = is_in(*rest, smaller) && smaller != rest->back();  // The base stays.
+    const OccurrenceId id = can_go ? smaller : (smaller == error.a ? error.b : error.a);
+    if (is_in(present, error.a) && is_in(present, error.b) && is_in(*rest, id) &&
+        id != rest->back() &&
+        (found == nullptr || extraction_.SizeOf(id) > extraction_.SizeOf(out))) {
+      found = &error;
+      out = id;
+    }
+  }
+  if (found != nullptr) {
+    GiveUp(out, "an error of the drawing: " + mates::DescribeDrawingError(product_, *found), rest,
+           removed, sequence);
+  }
+  return found != nullptr;
 }
 
 Unit Planner::WithFixtures(const Unit& rest) const {
@@ -245,6 +283,10 @@ void Planner::TakeOutNext(std::optional<BlockingGraph>* graph, Unit* rest,
   }
   if (step) {
     removed->push_back(std::move(*step));
+    return;
+  }
+  if (GiveUpError(rest, removed, sequence)) {
+    graph->reset();
     return;
   }
   if (std::optional<SequenceStep> turning = extraction_.TryRemoveRing(rest, connecting)) {
