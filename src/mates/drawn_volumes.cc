@@ -21,9 +21,10 @@ using product::Pose;
 using product::Product;
 
 constexpr int kRays = 32;             // Along each side of the boxes' overlap: a choice.
-constexpr int kMostRays = 128;        // Along a long side: a choice.
+constexpr int kMostRays = 64;         // Along a long side: a choice.
 constexpr double kRayStep = 2e-3;     // [m]: along long sides rays lie no further apart. A choice.
 constexpr double kShift = 0.4142136;  // Of a step: rays keep off the edges of what is drawn round.
+constexpr std::size_t kMostSurface = 4096;  // Points that a depth is measured from: a choice.
 constexpr std::size_t kMostPoints = 512;  // Whose depth is looked for: a choice.
 constexpr std::size_t kMostInside = 64;   // Points of a part that is inside the other: a choice.
 constexpr double kInterference = 1e-6;    // [m]: less is drawn equal.
@@ -277,12 +278,14 @@ using Depths = std::map<std::pair<FaceId, FaceId>, double>;
 void AddDepths(const std::vector<Border>& points, const std::vector<Border>& surface, bool is_a,
                Depths* depths) {
   const std::size_t step = 1 + points.size() / kMostPoints;
+  const std::size_t stride = 1 + surface.size() / kMostSurface;
   for (std::size_t i = 0; !surface.empty() && i < points.size(); i += step) {
     const Border& point = points[i];
     double nearest = std::numeric_limits<double>::infinity();
     double depth = 0;
     FaceId face;
-    for (const Border& other : surface) {
+    for (std::size_t k = 0; k < surface.size(); k += stride) {
+      const Border& other = surface[k];
       const Vec3 d = other.p_F - point.p_F;
       if (d.squaredNorm() < nearest) {
         nearest = d.squaredNorm();
@@ -414,7 +417,8 @@ SharedVolume Measure(const Product& product, const Fits& fits, SharedVolume shar
   const spatial::Box box_a = spatial::Transform(X_FA, part_a.box_B);
   const spatial::Box box_b = spatial::Transform(X_FB, part_b.box_B);
   const spatial::Box box{box_a.low.cwiseMax(box_b.low), box_a.high.cwiseMin(box_b.high)};
-  if (box.is_empty() || box.size().minCoeff() <= kInterference) {
+  // Without a fit, what is no deeper than faces that touch is not looked into.
+  if (box.is_empty() || box.size().minCoeff() <= (fits.empty() ? kTouching : kInterference)) {
     return shared;
   }
   const Found found =

@@ -36,7 +36,7 @@ struct SharedVolume {
 [[nodiscard]] const char* ToString(SharedVolume::Cause cause);
 
 /** Measures the space that two parts share: rays along the three axes of the smaller part through
- the boxes' overlap, 32 by 32 of each or as many as lie 2 mm apart (128 at most), of which the
+ the boxes' overlap, 32 by 32 of each or as many as lie 2 mm apart (64 at most), of which the
  direction with the most hits counts for the volume; once more through the box of what they find.
  That is good to some percent where the overlap is wider than a step of the rays. The depth is that
  of the mates' radii where they explain the overlap, that of the radii of cylinders about one axis;
