@@ -25,10 +25,10 @@ constexpr int kMostRays = 64;         // Along a long side: a choice.
 constexpr double kRayStep = 2e-3;     // [m]: along long sides rays lie no further apart. A choice.
 constexpr double kShift = 0.4142136;  // Of a step: rays keep off the edges of what is drawn round.
 constexpr std::size_t kMostSurface = 4096;  // Points that a depth is measured from: a choice.
-constexpr std::size_t kMostPoints = 512;  // Whose depth is looked for: a choice.
-constexpr std::size_t kMostInside = 64;   // Points of a part that is inside the other: a choice.
-constexpr double kInterference = 1e-6;    // [m]: less is drawn equal.
-constexpr double kTouching = 50e-6;       // [m]: faces of meshes that touch may lie this deep.
+constexpr std::size_t kMostPoints = 512;    // Whose depth is looked for: a choice.
+constexpr std::size_t kMostInside = 64;     // Points of a part that is inside the other: a choice.
+constexpr double kInterference = 1e-6;      // [m]: less is drawn equal.
+constexpr double kTouching = 50e-6;         // [m]: faces of meshes that touch may lie this deep.
 
 /** A triangle of a part and its face, in the frame F of a measurement. */
 struct Facet {
@@ -388,6 +388,7 @@ std::optional<double> CalcCylinderOverlap(const spatial::Surface& a, const spati
 /** The faces that lie in one another, the deepest first, each pair with its own depth. */
 std::vector<FaceOverlap> ListFaces(const Product& product, const SharedVolume& shared,
                                    const Depths& depths) {
+  constexpr double kInHole = 0.5;  // Of the radii's difference: a choice.
   const auto surface_of = [&](OccurrenceId id, FaceId face) {
     return face.is_valid() ? spatial::Transform(product.occurrences[id.index()].X_WB,
                                                 product.part_of(id).faces[face.index()].surface)
@@ -397,8 +398,14 @@ std::vector<FaceOverlap> ListFaces(const Product& product, const SharedVolume& s
   for (const auto& [pair, depth] : depths) {
     const auto exact =
         CalcCylinderOverlap(surface_of(shared.a, pair.first), surface_of(shared.b, pair.second));
-    faces.push_back(
-        {pair.first, pair.second, exact ? std::max(0.0, *exact) : depth, exact && *exact > 0});
+    // Where the nearest way out is another one, the shaft is not in that hole.
+    const bool is_in_hole = exact && *exact > 0 && depth > kInHole * *exact;
+    const bool is_clear = exact && *exact <= 0;  // What is measured comes of the meshes.
+    faces.push_back({pair.first, pair.second,
+                     is_in_hole ? *exact
+                     : is_clear ? 0.0
+                                : depth,
+                     is_in_hole});
   }
   std::stable_sort(faces.begin(), faces.end(),
                    [](const FaceOverlap& x, const FaceOverlap& y) { return x.depth > y.depth; });
