@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fits/iso286.h"
@@ -28,7 +27,7 @@ using product::Part;
 using product::PartId;
 using product::Product;
 using spatial::Pose;
-using ::testing::HasSubstr;
+using ::testing::IsSubstring;
 
 constexpr int kSegments = 96;  // Chords of a circle of 30 mm: 8 um.
 
@@ -137,9 +136,9 @@ TEST(DrawingErrors, ShaftThatNoPressFitHasIsNamedWithBothDiametersAndHasNoMate) 
     ASSERT_EQ(diagnostics.items().size(), 1U);
     EXPECT_EQ(diagnostics.items()[0].code, "drawing-error");
   }
-  EXPECT_THAT(DescribeDrawingError(RodInRing(28.575e-3, 25.4e-3),
-                                   RodInRing(28.575e-3, 25.4e-3).drawing_errors[0]),
-              HasSubstr("28.575 mm in a hole of 25.4 mm"));
+  EXPECT_PRED_FORMAT2(IsSubstring, "28.575 mm in a hole of 25.4 mm",
+                      DescribeDrawingError(RodInRing(28.575e-3, 25.4e-3),
+                                           RodInRing(28.575e-3, 25.4e-3).drawing_errors[0]));
 }
 
 TEST(DrawingErrors, PressFitsOfMetalAndOfPlasticsAreNone) {
@@ -196,7 +195,7 @@ TEST(DrawingErrors, EqualPairsHaveEqualErrorsAndOneWarning) {
   Diagnostics diagnostics;
   ReportDrawingErrors(product, &diagnostics);
   ASSERT_EQ(diagnostics.items().size(), 1U);
-  EXPECT_THAT(diagnostics.items()[0].message, HasSubstr("4 more pairs"));
+  EXPECT_PRED_FORMAT2(IsSubstring, "4 more pairs", diagnostics.items()[0].message);
 }
 
 TEST(DrawingErrors, PartsThatCrossOrLieWhollyInsideAreFoundTheLargestFirst) {
@@ -230,7 +229,7 @@ TEST(DrawingErrors, FitThatIsStatedForSuchAnOverlapIsRefused) {
   ASSERT_TRUE(HasFitOf(product, FitKind::kThread));
   const auto refused = AssignFit(&product, "m0=H7/p6");
   ASSERT_FALSE(refused.has_value());
-  EXPECT_THAT(refused.error().message, HasSubstr("8 mm is drawn in a hole of 6.647 mm"));
+  EXPECT_PRED_FORMAT2(IsSubstring, "8 mm is drawn in a hole of 6.647 mm", refused.error().message);
   EXPECT_TRUE(AssignFit(&product, "m0=thread").has_value());
   Product press = RodInRing(25.45e-3, 25.4e-3);
   EXPECT_TRUE(AssignFit(&press, "m0=H7/p6").has_value());
