@@ -277,8 +277,10 @@ using Depths = std::map<std::pair<FaceId, FaceId>, double>;
  the plane of the nearest point. @param is_a  The points are those of the first part. */
 void AddDepths(const std::vector<Border>& points, const std::vector<Border>& surface, bool is_a,
                Depths* depths) {
-  const std::size_t step = 1 + points.size() / kMostPoints;
-  const std::size_t stride = 1 + surface.size() / kMostSurface;
+  // Each ray has its points in pairs, one on either side of the part: an even step would leave out a
+  // side.
+  const std::size_t step = (1 + points.size() / kMostPoints) | 1U;
+  const std::size_t stride = (1 + surface.size() / kMostSurface) | 1U;
   for (std::size_t i = 0; !surface.empty() && i < points.size(); i += step) {
     const Border& point = points[i];
     double nearest = std::numeric_limits<double>::infinity();
@@ -304,7 +306,7 @@ void AddInside(const std::vector<Border>& points, const Part& other, const Pose&
                Depths* depths) {
   const Pose X_BF = X_FB.Inverse();
   const double reach = 2 * other.box_B.size().norm();
-  const std::size_t step = 1 + points.size() / kMostInside;
+  const std::size_t step = (1 + points.size() / kMostInside) | 1U;  // As in AddDepths().
   for (std::size_t i = 0; i < points.size(); i += step) {
     const Border& point = points[i];
     std::optional<product::RayHit> nearest;

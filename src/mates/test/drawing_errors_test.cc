@@ -213,17 +213,6 @@ TEST(DrawingErrors, PartsThatCrossOrLieWhollyInsideAreFoundTheLargestFirst) {
   EXPECT_NEAR(errors[1].depth, 30e-3, 6e-3);  // Its far side from the block's.
 }
 
-TEST(DrawingErrors, SmallDeepOverlapOfLargePartsIsFound) {
-  // Pins of 2 mm on a wide plate, in a plate without holes: a hundredth of its width.
-  Product product;
-  AddRing(&product, "plate", 0, 200e-3, 10e-3);
-  AddRing(&product, "cover", 0, 200e-3, 10e-3, Pose(Vec3(0, 0, 10e-3)));
-  Part* cover = &product.parts[1];
-  AddRound(cover, FeatureKind::kShaft, 1e-3, -8e-3);
-  product.parts[1].box_B.Add(Vec3(0, 0, -8e-3));
-  EXPECT_EQ(ListDrawingErrors(product).size(), 1U);
-}
-
 TEST(DrawingErrors, FitThatIsStatedForSuchAnOverlapIsRefused) {
   Product product = RodInRing(8e-3, 6.647e-3, "screw M8x10");
   ASSERT_TRUE(HasFitOf(product, FitKind::kThread));
