@@ -15,6 +15,7 @@
 #include "cad/encoding.h"
 #include "cad/length_unit.h"
 #include "mates/assignments.h"
+#include "mates/drawing_errors.h"
 #include "mates/elastic_parts.h"
 #include "mates/flexible_parts.h"
 #include "mates/infer.h"
@@ -241,6 +242,13 @@ Result<Product> Complete(const OpenOptions& options, Product product, const Diag
       return Unexpected(assigned.error());
     }
   }
+  NoteStage("errors of the drawing");
+  product.drawing_errors = mates::ListDrawingErrors(product, watch);
+  if (!watch->MayGoOn()) {
+    return Unexpected(
+        watch->Explain("finding the errors of the drawing", options.file.filename().string()));
+  }
+  mates::ReportDrawingErrors(product, diagnostics);
   if (const auto added = AddAccessories(options, &product, watch, diagnostics); !added) {
     return Unexpected(added.error());
   }

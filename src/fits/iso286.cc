@@ -227,6 +227,14 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
+constexpr int kCoarsestPressed = 11;  // ISO 286-2 has classes of zc up to this grade.
+
+/** Upper limit of a shaft; 0 where the standard has no such class [m]. */
+double CalcUpperOf(const char* letters, int grade, double nominal) {
+  const Result<Limits> limits = CalcLimits({letters, grade}, nominal);
+  return limits ? limits->upper : 0.0;
+}
+
 }  // namespace
 
 std::string ToleranceClass::ToString() const {
@@ -341,6 +349,22 @@ Result<FitLimits> CalcFitLimits(const FitClass& fit, double nominal) {
   FitLimits limits{*hole, *shaft, hole->lower - shaft->upper, hole->upper - shaft->lower};
   limits.kind = ClassifyFit(limits.min_clearance, limits.max_clearance);
   return limits;
+}
+
+double CalcLargestInterference(double nominal) {
+  double largest = CalcUpperOf("zc", kCoarsestPressed, nominal);
+  for (int grade = kCoarsestGrade; grade > kCoarsestPressed; --grade) {
+    largest = std::max(largest, CalcUpperOf("js", grade, nominal));
+  }
+  return largest;
+}
+
+double CalcLargestPress(double diameter) {
+  constexpr double kMostStrain =
+      0.05;  // Thermoplastics yield at 2 to 5 %, steel at 0.3 %: a choice.
+  const double pressed =
+      std::max(CalcUpperOf("zc", kCoarsestPressed, diameter), kMostStrain * diameter);
+  return std::min(pressed, CalcLargestInterference(diameter));
 }
 
 }  // namespace hvas::fits

@@ -60,6 +60,16 @@ struct FitLimits {
 
 [[nodiscard]] Result<FitLimits> CalcFitLimits(const FitClass& fit, double nominal);
 
+/** The largest interference that a fit with a hole H or a shaft h has at a size [m]: that of the
+ classes js up to grade 18, and of zc up to grade 11, where ISO 286-2 ends them. 0 beyond the sizes
+ of the standard. @param nominal  Nominal size [m]. */
+[[nodiscard]] double CalcLargestInterference(double nominal);
+
+/** The largest interference of a press fit of round parts [m]: that of zc11, or 5 % of the
+ diameter, which is more than thermoplastics bear before they yield; no more than
+ CalcLargestInterference(). */
+[[nodiscard]] double CalcLargestPress(double diameter);
+
 /** Clearance where no pair has interference, interference where all have, transition between. */
 [[nodiscard]] FitKind ClassifyFit(double min_clearance, double max_clearance);
 

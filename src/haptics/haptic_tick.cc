@@ -336,6 +336,7 @@ void HapticTick::Step(std::span<const HandExchange> others, TickOutput* out) noe
   const EnergyCredit credit = guidance_.AddTo(displayed_, weight_true, soft_start_, &solver_);
   output_.AddCredit(credit.force);
   output_.AddTurningCredit(credit.torque);
+  seating_.AddHoming(displayed_, &solver_);
   contacts_.AddBodies(&solver_);
   contacts_.AddHeldContacts(displayed_, &solver_);
   contacts_.AddFreeContacts(&solver_);
@@ -352,6 +353,7 @@ void HapticTick::Step(std::span<const HandExchange> others, TickOutput* out) noe
   guidance_.Finish(solver_, out);
   out->axis = guidance_.DescribeAxis(part);
   UpdateState();
+  out->is_matched = seating_.is_matched() || state_ == HoldState::kSeated;
   has_engaged_ = guidance_.HasCapturedMore() || has_engaged_;
 }
 
@@ -370,14 +372,23 @@ void HapticTick::RecordResponse(const Mat3& I_W, double mass,
   }
 }
 
+void HapticTick::CreditWayHome(const Seating::Remainder& way) noexcept {
+  const double to_go = way.d_W.norm();
+  output_.AddCredit(0.5 * options_.coupling.k_lin * to_go * to_go /
+                    options_.workspace.mapping.scale);
+}
+
 void HapticTick::UpdateState() noexcept {
   const MateGuide& mates = guidance_.mates();
-  if (seating_.HasArrived(displayed_, coupling_.tracked())) {
+  const bool was_matched = seating_.is_matched();
+  const bool has_arrived = seating_.HasArrived(displayed_, coupling_.tracked());
+  if (!has_arrived && !was_matched && seating_.IsDrawingHome(*displayed_.part)) {
+    CreditWayHome(Seating::CalcRemainder(displayed_));
+  }
+  if (has_arrived) {
     state_ = HoldState::kSeated;
     seating_.Start(displayed_);
-    const double to_go = seating_.arrival().d_W.norm();
-    output_.AddCredit(0.5 * options_.coupling.k_lin * to_go * to_go /
-                      options_.workspace.mapping.scale);
+    CreditWayHome(seating_.arrival());
   } else if (mates.captured_count() > 0) {
     state_ = mates.is_aligned() ? HoldState::kMating : HoldState::kCaptured;
   } else {

@@ -144,6 +144,8 @@ class HapticTick {
   void Hold(std::span<const HandExchange> others, TickOutput* out) noexcept;
   void Step(std::span<const HandExchange> others, TickOutput* out) noexcept;
   void RecordResponse(const Mat3& I_W, double mass, const spatial::Twist& V_before) noexcept;
+  /** Credits the energy by which the part pulls the hand as it goes home. */
+  void CreditWayHome(const Seating::Remainder& way) noexcept;
   void UpdateState() noexcept;
 
   const TickOptions options_;

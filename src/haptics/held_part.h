@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -114,6 +115,8 @@ struct HeldPart {
   bool has_bent_way{false};     ///< Its way bends or turns: nothing draws it straight to its place.
   bool starts_in_place{false};  ///< It is taken out: X_WB_start is its place.
   std::vector<HeldMate> mates;
+  /** Diameter or width of the smallest feature that guides it; infinite where none does [m]. */
+  double smallest_guide{std::numeric_limits<double>::infinity()};
   bool lacks_partners{false};  ///< What it should have been put to is not there: it never seats.
   std::vector<contact::BodyId> left_out;       ///< They move with it: no contact.
   std::vector<contact::Allowance> allowances;  ///< What it may overlap; spans of the model.

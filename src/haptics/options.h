@@ -59,17 +59,19 @@ struct CouplingGains {
  the papers set none; docs/algorithms/sensitivity.md varies most. */
 struct GuidanceOptions {
   mates::CaptureThresholds capture;
-  double ramp_time{0.25};            ///< Time from first touch of guidance to full stiffness [s].
-  double k_lin{1e6};                 ///< Full stiffness across an axis [N/m].
-  double k_rot{1e4};                 ///< Full stiffness against tilt [N m/rad].
-  double max_force{20};              ///< Guidance never pulls harder [N].
-  double max_torque{2};              ///< [N m]
-  double attraction_force{1.0};      ///< K1 F_max of X(9) [N].
-  double attraction_torque{0.15};    ///< Attraction about a free axis [N m].
-  double seat_distance{0.15e-3};     ///< Distance from the goal at which a part has arrived [m].
-  double seat_angle{0.06};           ///< [rad]
-  double loose_seat_distance{3e-3};  ///< Distance for a part without any mate [m].
-  double seat_time{0.12};            ///< Duration of the last, exact, movement into place [s].
+  double ramp_time{0.25};          ///< Time from first touch of guidance to full stiffness [s].
+  double k_lin{1e6};               ///< Full stiffness across an axis [N/m].
+  double k_rot{1e4};               ///< Full stiffness against tilt [N m/rad].
+  double max_force{20};            ///< Guidance never pulls harder [N].
+  double max_torque{2};            ///< [N m]
+  double attraction_force{1.0};    ///< K1 F_max of X(9) [N].
+  double attraction_torque{0.15};  ///< Attraction about a free axis [N m].
+  /** Distance from its place at which a part is in it [m]; of a part that small features guide no
+   more than a tenth of the smallest. */
+  double seat_distance{0.15e-3};
+  double seat_angle{0.06};      ///< [rad]
+  double match_distance{3e-3};  ///< Distance at which a part is matched, and drawn home (W7) [m].
+  double seat_time{0.12};       ///< Duration of the last, exact, movement into place [s].
   /** A part that is let go so near to its place, and can be moved there, is in it [m]. 0: it stays
    where it was let go. */
   double finish_distance{0};

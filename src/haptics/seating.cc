@@ -20,6 +20,8 @@ double MinimumJerk(double s) noexcept {
 void Seating::Begin(const HeldPart& part) noexcept {
   arrival_ = {};
   progress_ = 0;
+  is_matched_ = false;
+  homing_ = 0;
   leaves_place_ = part.starts_in_place;
 }
 
@@ -33,38 +35,69 @@ bool Seating::HasArrived(const DisplayedPart& displayed, const TrackedPart& trac
   const HeldPart& part = *displayed.part;
   const GuidanceOptions& guidance = options_.guidance;
   if (part.lacks_partners) {
+    is_matched_ = false;
     return false;
   }
   const auto [d, angle] = CalcRemainder(displayed);
-  leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.loose_seat_distance &&
+  leaves_place_ = leaves_place_ && d.norm() < kLeaveFactor * guidance.match_distance &&
                   angle < kLeaveFactor * guidance.seat_angle;
-  if (leaves_place_ || IsDrawnOut(part, tracked)) {
-    return false;
-  }
-  if (d.norm() > guidance.loose_seat_distance || angle > guidance.seat_angle) {
+  if (leaves_place_ || IsDrawnOut(part, tracked) || d.norm() > guidance.match_distance ||
+      angle > guidance.seat_angle) {
+    is_matched_ = false;
     return false;
   }
   if (guidance_.thread().is_in() && guidance_.thread().angle() > kTight) {
     return false;  // Its head rests, and it is not tightened yet.
   }
-  if (d.norm() <= guidance.seat_distance) {
+  const double tolerance = CalcTolerance(part);
+  if (d.norm() <= tolerance) {
     return true;  // wherever the hand is by now
   }
-  const MateGuide& mates = guidance_.mates();
-  const bool is_guided = mates.captured_count() > 0;
+  const bool is_guided = guidance_.mates().captured_count() > 0;
   const bool needs_guide = !part.mates.empty() && options_.condition != Condition::kCollision;
   if (needs_guide && !is_guided) {
+    is_matched_ = false;
     return false;
   }
-  // Along the way in, and across an axis but for its play, a part is home or it is not; where only
-  // planes or nothing at all hold it, it is set straight over the last bit, if nothing is there.
+  // Along the way in, and across an axis but for its play, a part is in its place or it is not.
   const double along = std::abs(d.dot(part.insertion_W));
-  const double tight =
-      mates.axis() != nullptr ? std::hypot(along, CalcBeyondPlay(displayed)) : along;
-  if (is_guided && tight > guidance.seat_distance) {
-    return false;
+  if (HasAxis(part)) {
+    is_matched_ = true;
+    return std::hypot(along, CalcBeyondPlay(displayed)) <= tolerance && IsWayHomeFree(displayed);
   }
-  return IsWayHomeFree(displayed);
+  is_matched_ = is_matched_ || ((!is_guided || along <= tolerance) && IsWayHomeFree(displayed));
+  return false;
+}
+
+bool Seating::HasAxis(const HeldPart& part) const noexcept {
+  const MateGuide& mates = guidance_.mates();
+  return mates.axis() != nullptr && std::isfinite(mates.CalcAxisPlay(part));
+}
+
+double Seating::CalcTolerance(const HeldPart& part) const noexcept {
+  constexpr double kShare = 0.1;  // Of the smallest feature that guides the part: a choice.
+  return std::min(options_.guidance.seat_distance, kShare * part.smallest_guide);
+}
+
+void Seating::AddHoming(const DisplayedPart& displayed, ConstraintSolver* solver) noexcept {
+  const HeldPart& part = *displayed.part;
+  if (!IsDrawingHome(part)) {
+    homing_ = 0;
+    return;
+  }
+  const GuidanceOptions& guidance = options_.guidance;
+  homing_ = std::min(1.0, homing_ + options_.dt / guidance.ramp_time);
+  const Vec3& n = part.insertion_W;
+  const Vec3 d = CalcRemainder(displayed).d_W;
+  const Vec3 along = d.dot(n) * n;
+  const auto stiffness = [&](double distance, double strongest) {
+    const double k = distance * guidance.k_lin > strongest ? strongest / distance : guidance.k_lin;
+    return homing_ * k;
+  };
+  const double k_along = stiffness(along.norm(), guidance.attraction_force);
+  const double k_across = stiffness((d - along).norm(), guidance.max_force);
+  solver->AddPointSpring(displayed.p_WCm(), -k_along * along - k_across * (d - along),
+                         k_across * Mat3::Identity() + (k_along - k_across) * n * n.transpose());
 }
 
 double Seating::CalcBeyondPlay(const DisplayedPart& displayed) const noexcept {
@@ -105,8 +138,7 @@ bool Seating::CanFinish(const DisplayedPart& displayed, const TrackedPart& track
 
 bool Seating::IsDrawnOut(const HeldPart& part, const TrackedPart& tracked) const noexcept {
   const Vec3 lead = tracked.X_WT * part.p_BoBcm_B - part.X_WB_goal * part.p_BoBcm_B;
-  return part.starts_in_place &&
-         lead.dot(part.insertion_W) < -options_.guidance.loose_seat_distance;
+  return part.starts_in_place && lead.dot(part.insertion_W) < -options_.guidance.match_distance;
 }
 
 spatial::Pose Seating::CalcPose(const HeldPart& part, double progress) const noexcept {

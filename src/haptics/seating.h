@@ -28,9 +28,22 @@ class Seating {
   /** The part was taken up in its place, and is not out of it yet. */
   [[nodiscard]] bool leaves_place() const noexcept { return leaves_place_; }
 
-  /** The displayed part is where it belongs: it may be moved exactly there. */
+  /** The displayed part is in its place by its pose: it may be moved exactly there. Notes whether
+   it is matched. */
   [[nodiscard]] bool HasArrived(const DisplayedPart& displayed,
                                 const TrackedPart& tracked) noexcept;
+
+  /** The part is so near to its place, with nothing in between, that it is drawn home (W7). */
+  [[nodiscard]] bool is_matched() const noexcept { return is_matched_; }
+
+  /** The part is matched, and no axis leads it. */
+  [[nodiscard]] bool IsDrawingHome(const HeldPart& part) const noexcept {
+    return is_matched_ && !HasAxis(part);
+  }
+
+  /** Draws a matched part home where no axis leads it: across its way in as mates guide, along it
+   as X(9) attracts, which no fit and nothing that gives yields to. */
+  void AddHoming(const DisplayedPart& displayed, ConstraintSolver* solver) noexcept;
 
   /** A part that is let go may be moved into its place: it is close, nothing is in between, and no
    fit would have to be overcome. */
@@ -53,6 +66,10 @@ class Seating {
   /** How far the part is across its axis beyond the play, in the hole: a long part that leans in it
    is further off elsewhere [m]. @pre The mates hold an axis. */
   [[nodiscard]] double CalcBeyondPlay(const DisplayedPart& displayed) const noexcept;
+  /** An axis holds the part across its way in. */
+  [[nodiscard]] bool HasAxis(const HeldPart& part) const noexcept;
+  /** Distance from its place at which a part is in it [m]. */
+  [[nodiscard]] double CalcTolerance(const HeldPart& part) const noexcept;
   /** The straight way from here into the part's place is free. */
   [[nodiscard]] bool IsWayHomeFree(const DisplayedPart& displayed) noexcept;
   /** The part was taken up in its place, and the hand leads it outwards: it may bounce there, and
@@ -67,6 +84,8 @@ class Seating {
   double progress_{0};        ///< 0..1 of the last movement.
   spatial::Pose X_WD_start_;  ///< Where the last movement begins.
   bool leaves_place_{false};
+  bool is_matched_{false};
+  double homing_{0};  ///< 0..1 since the part was matched.
 };
 
 }  // namespace hvas::haptics

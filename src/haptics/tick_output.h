@@ -76,6 +76,7 @@ struct TickOutput : ContactAccount {
   spatial::Pose X_WT;        ///< Tracked part, or the hand when it is empty.
   spatial::Pose X_WD;        ///< Displayed part, or the hand when it is empty.
   HoldState state{HoldState::kEmpty};
+  bool is_matched{false};  ///< The part is so near to its place that it is drawn home (W7).
   product::OccurrenceId occurrence;
   double insertion_depth{0};  ///< Depth of insertion l [m].
   double axial_true{0};       ///< Force of the fits on their axis; positive against going in [N].

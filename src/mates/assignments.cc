@@ -89,6 +89,9 @@ Result<Fit> MakeFit(std::string_view text, const Mate& mate, std::optional<doubl
   if (text == "thread") {
     return Fit{FitKind::kThread, "", nominal.value_or(NominalOf(mate)), false, std::move(reason)};
   }
+  if (const Result<void> checked = CheckDrawnPress(mate); !checked) {
+    return Unexpected(checked.error());
+  }
   if (const Result<fits::ToleranceClass> side = fits::ParseToleranceClass(text)) {
     return MakeSideFit(*side, mate, nominal, reason);
   }

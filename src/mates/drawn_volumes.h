@@ -7,6 +7,14 @@
 
 namespace hvas::mates {
 
+/** Two faces of which one lies inside the other's part. */
+struct FaceOverlap {
+  product::FaceId a;       ///< Of the first part.
+  product::FaceId b;       ///< Of the second part.
+  double depth{0};         ///< [m]
+  bool is_coaxial{false};  ///< Shaft and hole about one axis: the depth is the radii's difference.
+};
+
 /** Two parts that share space as drawn. */
 struct SharedVolume {
   /** What is made of it. */
@@ -21,15 +29,18 @@ struct SharedVolume {
   double volume{0};  ///< [m^3]
   double depth{0};   ///< The deepest point of one inside the other, from its surface [m].
   Cause cause{Cause::kOverlap};
-  product::MateId mate;  ///< The mate that explains it; else invalid.
+  product::MateId mate;            ///< The mate that explains it; else invalid.
+  std::vector<FaceOverlap> faces;  ///< Faces that lie in one another, the deepest first.
 };
 
 [[nodiscard]] const char* ToString(SharedVolume::Cause cause);
 
-/** Measures the space that two parts share: rays along the three axes of W through the boxes'
- overlap, 32 by 32 of each, of which the direction with the most hits counts for the volume. That is
- good to some percent where the overlap is wider than a step of the rays. The depth is that of the
- mates' radii where they explain the overlap; else it is good to the deviation of the meshes.
+/** Measures the space that two parts share: rays along the three axes of the smaller part through
+ the boxes' overlap, 32 by 32 of each or as many as lie 2 mm apart (64 at most), of which the
+ direction with the most hits counts for the volume; once more through the box of what they find.
+ That is good to some percent where the overlap is wider than a step of the rays. The depth is that
+ of the mates' radii where they explain the overlap, that of the radii of cylinders about one axis;
+ else it is good to the deviation of the meshes.
  @returns zero volume where they share none. */
 [[nodiscard]] SharedVolume MeasureSharedVolume(const product::Product& product,
                                                product::OccurrenceId a, product::OccurrenceId b);

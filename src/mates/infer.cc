@@ -17,6 +17,7 @@
 #include "fits/threads.h"
 #include "mates/axis_rules.h"
 #include "mates/build_mate.h"
+#include "mates/drawing_errors.h"
 #include "mates/drawn_oddities.h"
 #include "mates/fasteners.h"
 #include "mates/joints.h"
@@ -378,6 +379,8 @@ class Inference {
         }
       }
     }
+    std::erase_if(product_->mates,
+                  [this](const Mate& mate) { return IsBeyondAnyFit(*product_, mate); });
   }
 
   void Finish() {

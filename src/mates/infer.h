@@ -17,7 +17,8 @@ namespace hvas::mates {
  between, nor for a wide passage around a shaft that another part guides. Face-face: opposing planes
  that touch over an area; one mate for each pair of parts and plane. Both connectors of a mate
  coincide exactly in the drawn pose, whatever play the drawing has, so the drawn pose fulfils all
- mates at once. Nothing is moved. Copies of a part at the very same place get no mates.
+ mates at once. Nothing is moved. Copies of a part at the very same place get no mates, nor has a
+ shaft in a hole that is smaller by more than any joint has (IsBeyondAnyFit).
 
  Tells parts without a mate ("no-mate"), copies ("duplicate-part") and drawn interference
  ("drawn-interference"). */

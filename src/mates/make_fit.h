@@ -15,4 +15,8 @@ namespace hvas::mates {
 [[nodiscard]] Result<product::Fit> MakeWholeFit(const fits::FitClass& fit, double nominal,
                                                 std::string reason);
 
+/** Checks that ISO 286 has a fit with the interference that the parts of a mate are drawn with, so
+ that one can be stated for it. Error: kInvalid with both diameters. */
+[[nodiscard]] Result<void> CheckDrawnPress(const product::Mate& mate);
+
 }  // namespace hvas::mates

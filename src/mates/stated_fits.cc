@@ -76,7 +76,7 @@ std::optional<Fit> FindFit(const Product& product, const Mate& mate, WorkWatch* 
 int AssignStatedFits(Product* product, WorkWatch* watch) {
   int count = 0;
   for (Mate& mate : product->mates) {
-    if (!HasFit(mate.kind)) {
+    if (!HasFit(mate.kind) || !CheckDrawnPress(mate)) {
       continue;
     }
     if (std::optional<Fit> fit = FindFit(*product, mate, watch)) {

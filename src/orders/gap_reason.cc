@@ -624,6 +624,21 @@ GapReason GapExplainer::Explain() {
   return std::move(reason_);
 }
 
+/** The error of the drawing for which a part was left out: one with a part that was not; null where
+ there is none. */
+const product::DrawingError* FindOwnError(const simulation::Model& model, OccurrenceId id) {
+  const auto is_gap = [&model](OccurrenceId part) {
+    return std::any_of(model.sequence.gaps.begin(), model.sequence.gaps.end(),
+                       [part](const sequence::SequenceGap& gap) { return gap.occurrence == part; });
+  };
+  const std::vector<product::DrawingError>& errors = model.product->drawing_errors;
+  const auto found =
+      std::find_if(errors.begin(), errors.end(), [&](const product::DrawingError& error) {
+        return (error.a == id && !is_gap(error.b)) || (error.b == id && !is_gap(error.a));
+      });
+  return found == errors.end() || !is_gap(id) ? nullptr : &*found;
+}
+
 }  // namespace
 
 Result<GapReason> ExplainGap(const simulation::Model& model, OccurrenceId id,
@@ -634,6 +649,13 @@ Result<GapReason> ExplainGap(const simulation::Model& model, OccurrenceId id,
   if (model.bodies[id.index()].role != simulation::BodyRole::kPart) {
     return Fail(ErrorCode::kNotFound, "tools and fixtures are not put in by the assembly",
                 model.product->occurrences[id.index()].path);
+  }
+  if (const product::DrawingError* error = FindOwnError(model, id)) {
+    GapReason reason;
+    reason.occurrence = id;
+    reason.present = {error->a == id ? error->b : error->a};
+    reason.proof = GapProof::kDrawn;
+    return reason;
   }
   return GapExplainer(model, id, options).Explain();
 }

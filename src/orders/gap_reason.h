@@ -20,6 +20,7 @@ enum class GapProof : std::uint8_t {
   kNotFound,  ///< No way was found with the looks that there were; there may be one.
   kHeld,      ///< Contacts hold it in all six degrees of freedom, to first order.
   kCaged,     ///< A ball inside of the part cannot leave the space between the others.
+  kDrawn,     ///< It is drawn in another part, deeper than any joint: no way was searched for.
 };
 
 /** A change that might let a part in. In the order of how little they change. */

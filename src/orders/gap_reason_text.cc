@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "mates/drawing_errors.h"
 #include "orders/gap_reason.h"
 #include "product/names.h"
 
@@ -81,6 +82,13 @@ std::string DescribeProof(const simulation::Model& model, const GapReason& reaso
           reason.present.size() > 4 ? fmt::format("{} parts", reason.present.size())
                                     : JoinPaths(model, reason.present),
           reason.present.size() == 1 ? "s" : "", 2 * units::ToMm(reason.caged_radius));
+    case GapProof::kDrawn: {
+      const product::DrawingError* error =
+          product::FindDrawingError(*model.product, reason.occurrence, reason.present.front());
+      return error == nullptr ? std::string("an error of the drawing")
+                              : "an error of the drawing: " +
+                                    mates::DescribeDrawingError(*model.product, *error);
+    }
     case GapProof::kNotFound:
       return fmt::format("not proven: no way was found with {} looks", reason.looks);
   }
@@ -186,6 +194,10 @@ std::vector<std::string> FormatGapReason(const simulation::Model& model, const G
         sequence::DescribeDirection(reason.direction_W), reason.present.size()));
     return lines;
   }
+  if (reason.proof == GapProof::kDrawn) {
+    lines.push_back(DescribeProof(model, reason));
+    return lines;
+  }
   lines.push_back(DescribeWay(model, reason));
   lines.push_back(DescribeProof(model, reason));
   const GapChange* best = reason.best();
@@ -221,6 +233,8 @@ const char* NameOf(GapProof proof) {
       return "held";
     case GapProof::kCaged:
       return "caged";
+    case GapProof::kDrawn:
+      return "drawn";
   }
   return "";
 }

@@ -43,4 +43,13 @@ std::vector<FaceId> FacesOf(const Product& product, const Connector& side) {
   return faces;
 }
 
+const DrawingError* FindDrawingError(const Product& product, OccurrenceId a, OccurrenceId b) {
+  const auto found =
+      std::find_if(product.drawing_errors.begin(), product.drawing_errors.end(),
+                   [a, b](const DrawingError& error) {
+                     return (error.a == a && error.b == b) || (error.a == b && error.b == a);
+                   });
+  return found == product.drawing_errors.end() ? nullptr : &*found;
+}
+
 }  // namespace hvas::product

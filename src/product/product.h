@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "product/contact_pair.h"
+#include "product/drawing_error.h"
 #include "product/elastic_part.h"
 #include "product/flexible.h"
 #include "product/identity.h"
@@ -244,7 +245,8 @@ struct Product {
   std::vector<ContactPair> contact_pairs{};  ///< Stated by the user.
   std::vector<FlexiblePart>
       flexible{};  ///< Parts that may give, or are stated to be rigid; not serialised.
-  std::vector<ElasticPart> elastic{};  ///< Parts that push back; not serialised.
+  std::vector<ElasticPart> elastic{};          ///< Parts that push back; not serialised.
+  std::vector<DrawingError> drawing_errors{};  ///< The largest volume first; not serialised.
 
   [[nodiscard]] const Part& part_of(OccurrenceId id) const {
     return parts[occurrences[id.index()].part.index()];

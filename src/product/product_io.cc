@@ -97,7 +97,8 @@ void Visit(A& archive, T& value) {
 template <typename A, Is<Product> T>
 void Visit(A& archive, T& value) {
   auto& [name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W,
-         removed_mates, placement, header, relations, contact_pairs, flexible, elastic] = value;
+         removed_mates, placement, header, relations, contact_pairs, flexible, elastic,
+         drawing_errors] = value;
   archive(name, source, parts, subassemblies, occurrences, mates, joints, alignments, box_W);
 }
 

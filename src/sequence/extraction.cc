@@ -701,7 +701,8 @@ bool Extraction::AllowBeyondDrawn(const Unit& parts) {
         (is_blocked_by(overlap.a, overlap.b) || is_blocked_by(overlap.b, overlap.a))) {
       overlap.is_beyond = true;
       overlap.answer = DrawnOverlap::Answer::kAllowance;
-      overlap.allowed = std::max(overlap.allowed, overlap.depth) + kBeyondDrawn;
+      overlap.allowed =
+          std::min(std::max(overlap.allowed, overlap.depth) + kBeyondDrawn, overlap.largest);
       overlap.passing_a.clear();
       overlap.passing_b.clear();
       changed.insert({overlap.a, overlap.b});

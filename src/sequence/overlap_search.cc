@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contact/face_offsets.h"
+#include "mates/drawing_errors.h"
 #include "mates/drawn_volumes.h"
 #include "sequence/thread_faces.h"
 
@@ -50,6 +51,9 @@ void Insert(std::uint32_t face, std::vector<std::uint32_t>* faces) {
 }  // namespace
 
 std::vector<DrawnOverlap> OverlapSearch::Find() {
+  for (const product::DrawingError& error : input_.product->drawing_errors) {
+    EntryOf(error.a, error.b).depth = error.depth;  // They get no allowance.
+  }
   FindDeeper(kMostRelief);
   Relieve();
   FindDeeper(kDepthTolerance);
@@ -221,7 +225,7 @@ void OverlapSearch::Examine(OccurrenceId a, OccurrenceId b) {
     along = measured > 0 ? std::min(estimated, measured) : estimated;
   }
   overlap.depth = std::max(overlap.depth, allowed > 0 ? along : deepest);
-  overlap.allowed = allowed > 0 ? allowed + kReliefRoom : 0;
+  overlap.allowed = allowed > 0 ? std::min(allowed, overlap.largest) + kReliefRoom : 0;
   if (allowed > 0) {
     overlap.passing_a = Widen(overlap.a, overlap.b, overlap.faces_a);
     overlap.passing_b = Widen(overlap.b, overlap.a, overlap.faces_b);
@@ -249,6 +253,7 @@ DrawnOverlap& OverlapSearch::EntryOf(OccurrenceId a, OccurrenceId b) {
   DrawnOverlap overlap;
   overlap.a = a;
   overlap.b = b;
+  overlap.largest = mates::CalcLargestDepth(*input_.product, a, b);
   overlaps_.push_back(std::move(overlap));
   return overlaps_.back();
 }

@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "mates/drawing_errors.h"
 #include "sequence/base_choice.h"
 #include "sequence/extraction.h"
 #include "sequence/strategies.h"
@@ -42,9 +44,15 @@ class Planner {
    @param others  Parts of the level that are still there. */
   void PutAside(TakenOut out, const Unit& others, std::vector<SequenceStep>* removed,
                 Sequence* sequence);
-  /** Gives up the part whose absence lets most others come out, or the smallest: it is assumed to
-   come out. */
+  /** Gives up a part: it is assumed to come out. */
+  void GiveUp(OccurrenceId id, std::string reason, Level* level, std::vector<SequenceStep>* removed,
+              Sequence* sequence);
+  /** Gives up the part whose absence lets most others come out, or the smallest. */
   void GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequence* sequence);
+  /** A part of a pair that is drawn in one another (product::DrawingError), for which no further
+   way is searched, and the pair; null where there is none. */
+  [[nodiscard]] std::pair<OccurrenceId, const product::DrawingError*> FindError(
+      const Level& level) const;
 
   const SequenceInput& input_;
   const Product& product_;
@@ -100,6 +108,11 @@ void Planner::GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequen
   if (graph->is_limited()) {
     reason += "; the search for parts that come out together was ended";
   }
+  GiveUp(id, std::move(reason), level, removed, sequence);
+}
+
+void Planner::GiveUp(OccurrenceId id, std::string reason, Level* level,
+                     std::vector<SequenceStep>* removed, Sequence* sequence) {
   sequence->gaps.push_back({id, std::move(reason)});
   SequenceStep assumed;
   assumed.kind = SequenceStep::Kind::kAssume;
@@ -109,9 +122,33 @@ void Planner::GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequen
   std::erase(level->rest, id);
 }
 
+std::pair<OccurrenceId, const product::DrawingError*> Planner::FindError(const Level& level) const {
+  const Unit present = level.WithFixtures();
+  const auto is_in = [](const Unit& unit, OccurrenceId id) {
+    return std::find(unit.begin(), unit.end(), id) != unit.end();
+  };
+  // Of a chain of pairs the largest part that has to go, so that few have to.
+  std::pair<OccurrenceId, const product::DrawingError*> found{{}, nullptr};
+  for (const product::DrawingError& error : product_.drawing_errors) {
+    const OccurrenceId smaller = mates::SmallerOf(product_, error);
+    const auto can_go = [&](OccurrenceId id) {
+      return is_in(level.rest, id) && id != level.rest.back();  // The base stays.
+    };
+    const OccurrenceId id = can_go(smaller) ? smaller : (smaller == error.a ? error.b : error.a);
+    if (is_in(present, error.a) && is_in(present, error.b) && can_go(id) &&
+        (found.second == nullptr || extraction_.SizeOf(id) > extraction_.SizeOf(found.first))) {
+      found = {id, &error};
+    }
+  }
+  return found;
+}
+
 std::optional<TakenOut> Planner::TakeOut(Level* level) const {
   level->connecting = ListCutParts(level->WithFixtures(), neighbours_);
   for (const std::unique_ptr<Strategy>& strategy : strategies_) {
+    if (!strategy->goes_straight() && FindError(*level).second != nullptr) {
+      return std::nullopt;
+    }
     if (std::optional<TakenOut> out = strategy->TryTakeOut(level)) {
       return out;
     }
@@ -137,7 +174,10 @@ void Planner::PlanLevel(Unit rest, Sequence* sequence) {
   Level level{&product_, &extraction_, &neighbours_, &input_.fixtures, std::move(rest), {}, {}};
   while (level.rest.size() > 1 && !input_.stop.stop_requested()) {
     std::optional<TakenOut> out = TakeOut(&level);
-    if (!out) {
+    if (const auto [id, error] = FindError(level); !out && error != nullptr) {
+      GiveUp(id, "an error of the drawing: " + mates::DescribeDrawingError(product_, *error),
+             &level, &removed, sequence);
+    } else if (!out) {
       GiveUpOne(&level, &removed, sequence);
     } else if (!out->unit.empty()) {
       PutAside(*std::move(out), level.rest, &removed, sequence);

@@ -68,6 +68,7 @@ struct DrawnOverlap {
   double depth{0};  ///< [m]
   Answer answer{Answer::kNone};
   double allowed{0};                     ///< kAllowance: contact begins this deep [m].
+  double largest{0};                     ///< The most that a joint of the two may be allowed [m].
   bool is_beyond{false};                 ///< More is allowed than drawn: no way was found without.
   std::vector<std::uint32_t> faces_a;    ///< Faces of a that overlap; sorted.
   std::vector<std::uint32_t> faces_b;    ///< Faces of b.

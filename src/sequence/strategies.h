@@ -51,6 +51,10 @@ class Strategy {
   /** Takes the first part, or body of several parts, that comes out so out of a level; it is not in
    its rest any more. None: no part comes out so. */
   [[nodiscard]] virtual std::optional<TakenOut> TryTakeOut(Level* level) const = 0;
+
+  /** Whether its ways are straight and nothing gives: they are looked for also where parts are
+   drawn in one another. */
+  [[nodiscard]] virtual bool goes_straight() const { return false; }
 };
 
 /** One part goes straight. */
@@ -61,6 +65,8 @@ class StraightStrategy final : public Strategy {
 
   [[nodiscard]] std::optional<TakenOut> TryTakeOut(Level* level) const override;
 
+  [[nodiscard]] bool goes_straight() const override { return true; }
+
  private:
   bool may_disconnect_;
 };
@@ -69,12 +75,16 @@ class StraightStrategy final : public Strategy {
 class HangingStrategy final : public Strategy {
  public:
   [[nodiscard]] std::optional<TakenOut> TryTakeOut(Level* level) const override;
+
+  [[nodiscard]] bool goes_straight() const override { return true; }
 };
 
 /** A subassembly of the file goes straight as one body. */
 class SubassemblyStrategy final : public Strategy {
  public:
   [[nodiscard]] std::optional<TakenOut> TryTakeOut(Level* level) const override;
+
+  [[nodiscard]] bool goes_straight() const override { return true; }
 };
 
 /** Several parts go straight as one body although the file has no subassembly of them, or a part

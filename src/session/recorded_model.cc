@@ -24,7 +24,8 @@ constexpr const char* kSeed = "seed";
 constexpr const char* kPairs = "pairs";
 constexpr const char* kSteps = "steps";
 constexpr const char* kFingerprint = "fingerprint";
-constexpr const char* kFlexible = "flexible";  // Pairs of occurrence and allowance [m].
+constexpr const char* kFlexible = "flexible";             // Pairs of occurrence and allowance [m].
+constexpr const char* kDrawingErrors = "drawing_errors";  // Two occurrences, two faces, and sizes.
 constexpr const char* kElastic = "elastic";  // Occurrence, kind and sizes in SI, in a fixed order.
 
 /** Of what the ticks see of a model: equal models have equal ones. */
@@ -154,6 +155,66 @@ bool ReadElastic(const Json& json, product::Product* product) {
   return list.is_array();
 }
 
+Json MakeErrorsJson(const product::Product& product) {
+  Json list = Json::array();
+  for (const product::DrawingError& error : product.drawing_errors) {
+    list.push_back({error.a.value(), error.b.value(), error.face_a.value(), error.face_b.value(),
+                    error.is_in_hole ? 1 : 0, error.depth, error.largest, error.volume});
+  }
+  return list;
+}
+
+/** Reads the errors of the drawing of a record; none where they are not valid. Records of products
+ without any, and older ones, have no list. */
+std::optional<std::vector<product::DrawingError>> ReadErrors(const Json& json,
+                                                             const product::Product& product) {
+  std::vector<product::DrawingError> errors;
+  if (!json.contains(kDrawingErrors)) {
+    return errors;
+  }
+  constexpr std::size_t kNumbers = 8;   // Of each error.
+  constexpr std::size_t kIntegers = 5;  // They come first.
+  const Json& list = json[kDrawingErrors];
+  for (const Json& entry : list) {
+    const auto is_index = [](const Json& number) { return number.is_number_unsigned(); };
+    const bool is_entry = entry.is_array() && entry.size() == kNumbers &&
+                          std::all_of(entry.begin(), entry.begin() + kIntegers, is_index) &&
+                          std::all_of(entry.begin() + kIntegers, entry.end(),
+                                      [](const Json& number) { return number.is_number(); }) &&
+                          entry[0].get<std::uint64_t>() < product.occurrences.size() &&
+                          entry[1].get<std::uint64_t>() < product.occurrences.size();
+    if (!is_entry) {
+      return std::nullopt;
+    }
+    product::DrawingError error;
+    error.a = product::OccurrenceId(entry[0].get<std::uint32_t>());
+    error.b = product::OccurrenceId(entry[1].get<std::uint32_t>());
+    error.face_a = product::FaceId(entry[2].get<std::uint32_t>());
+    error.face_b = product::FaceId(entry[3].get<std::uint32_t>());
+    const auto has_face = [&product](product::OccurrenceId id, product::FaceId face) {
+      return !face.is_valid() || face.index() < product.part_of(id).faces.size();
+    };
+    if (!has_face(error.a, error.face_a) || !has_face(error.b, error.face_b)) {
+      return std::nullopt;
+    }
+    error.is_in_hole = entry[4].get<int>() != 0;
+    error.depth = entry[5].get<double>();
+    error.largest = entry[6].get<double>();
+    error.volume = entry[7].get<double>();
+    errors.push_back(error);
+  }
+  return list.is_array() ? std::optional(std::move(errors)) : std::nullopt;
+}
+
+/** Takes the errors of the drawing of a record into its product; false where they are not valid. */
+bool TakeErrors(const Json& json, product::Product* product) {
+  auto errors = ReadErrors(json, *product);
+  if (errors) {
+    product->drawing_errors = *std::move(errors);
+  }
+  return errors.has_value();
+}
+
 std::optional<fits::PairChoice> FindPairChoice(const std::string& name) {
   const auto found = std::find(fits::kPairChoices.begin(), fits::kPairChoices.end(), name);
   return found == fits::kPairChoices.end()
@@ -191,6 +252,9 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder) {
             {kFingerprint, CalcFingerprint(model)}};
   if (!model.product->elastic.empty()) {
     json[kElastic] = MakeElasticJson(*model.product);
+  }
+  if (!model.product->drawing_errors.empty()) {
+    json[kDrawingErrors] = MakeErrorsJson(*model.product);
   }
   const std::string text = json.dump();
   const auto bytes = std::as_bytes(std::span(text));
@@ -256,6 +320,24 @@ Json ParseModelJson(const std::vector<std::byte>& bytes) {
 }
 
 }  // namespace
+
+Result<std::vector<product::DrawingError>> ListDrawingErrors(record::Reader* reader,
+                                                             const product::Product& product) {
+  const auto bytes = reader->ReadAttachment(kModelAttachment);
+  if (!bytes) {
+    return bytes.error().code == ErrorCode::kNotFound
+               ? Result<std::vector<product::DrawingError>>({})
+               : Unexpected(bytes.error());
+  }
+  const Json json = ParseModelJson(*bytes);
+  auto errors = json.is_object() ? ReadErrors(json, product) : std::nullopt;
+  if (!errors) {
+    return Fail(ErrorCode::kUnreadable,
+                fmt::format("the model in the record has no valid \"{}\"", kDrawingErrors),
+                reader->path().string(), "restore the file from a copy");
+  }
+  return *std::move(errors);
+}
 
 Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(record::Reader* reader,
                                                                 const product::Product& product) {
@@ -327,6 +409,9 @@ Result<std::shared_ptr<const simulation::Model>> LoadModel(record::Reader* reade
   }
   if (json.is_object() && !ReadElastic(json, &*product)) {
     fields.Refuse(kElastic);
+  }
+  if (json.is_object() && !TakeErrors(json, &*product)) {
+    fields.Refuse(kDrawingErrors);
   }
   if (!fields.refused().empty()) {
     return Fail(ErrorCode::kUnreadable,

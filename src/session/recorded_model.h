@@ -34,6 +34,12 @@ void AttachModel(const simulation::Model& model, record::Recorder* recorder);
 /** Does as LoadProduct(); none for a record of before schema 3, which has no product in it. */
 [[nodiscard]] Result<std::optional<product::Product>> FindProduct(record::Reader* reader);
 
+/** Reads the errors of the drawing that the recorded product had; none in older records. Errors:
+ those of record::Reader::ReadAttachment; kUnreadable where they are not valid.
+ @param product  LoadProduct() of the record. */
+[[nodiscard]] Result<std::vector<product::DrawingError>> ListDrawingErrors(
+    record::Reader* reader, const product::Product& product);
+
 /** Lists the parts that have no step in a record's order of assembly: no way was found for them.
  Empty where the record has no model.
  @param product  The record's. Errors: kUnreadable for a model that is none. */

@@ -134,8 +134,8 @@ struct AllFields {
   template <typename F>
   static void Visit(F& f, haptics::GuidanceOptions& value) {
     auto& [capture, ramp_time, k_lin, k_rot, max_force, max_torque, attraction_force,
-           attraction_torque, seat_distance, seat_angle, loose_seat_distance, seat_time,
-           finish_distance, contact_in_holes, threads_turn, attracts_in_fits] = value;
+           attraction_torque, seat_distance, seat_angle, match_distance, seat_time, finish_distance,
+           contact_in_holes, threads_turn, attracts_in_fits] = value;
     VisitInner(f, "capture", capture);
     f("ramp_time_s", ramp_time);
     f("k_lin_n_per_m", k_lin);
@@ -146,7 +146,7 @@ struct AllFields {
     f("attraction_torque_nm", attraction_torque);
     f("seat_distance_m", seat_distance);
     f("seat_angle_rad", seat_angle);
-    f("loose_seat_distance_m", loose_seat_distance);
+    f("loose_seat_distance_m", match_distance);  // The name in older records.
     f("seat_time_s", seat_time);
   }
 

@@ -10,6 +10,7 @@
 
 #include "haptics/giving_curve.h"
 #include "product/product.h"
+#include "sequence/sequence.h"
 #include "spatial/pose.h"
 
 /** How parts that give are drawn: docs/algorithms/flexible.md, "Drawn deformed". All of it follows
@@ -18,7 +19,6 @@
 namespace hvas::simulation {
 
 struct PressedPair;
-struct Sequence;
 
 /** How a part changes its form. */
 enum class DeformationKind : std::uint8_t {

@@ -205,6 +205,7 @@ void HeldPartMaker::AddTablePlaces(const sequence::SequenceStep& step, haptics::
   for (const TablePlace& place : ListTablePlaces(model_, parts_, step)) {
     auto there = std::make_shared<haptics::HeldPart>(in_product);
     there->mates.clear();
+    there->smallest_guide = std::numeric_limits<double>::infinity();
     there->lacks_partners = false;
     there->insertion_W = place.insertion_W;
     there->has_bent_way = false;
@@ -352,6 +353,9 @@ void HeldPartMaker::AddMatesOf(const sequence::SequenceStep& step, std::size_t m
       continue;
     }
     if (std::optional<haptics::HeldMate> entry = MakeHeldMate(step, member, drawn, *held)) {
+      if (entry->radius > 0) {
+        held->smallest_guide = std::min(held->smallest_guide, 2 * entry->radius);
+      }
       held->mates.push_back(*std::move(entry));
     }
   }

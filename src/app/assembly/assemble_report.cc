@@ -8,6 +8,7 @@
 #include "app/assembly/gap_reason_json.h"
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
+#include "app/product/drawing_errors_report.h"
 #include "base/units.h"
 #include "mates/drawn_volumes.h"
 
@@ -157,6 +158,7 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report, const Le
   json["assumed"] = CountAssumed(outcome);
   json["not_tried"] = outcome.parts.size() - CountSeated(outcome) - CountAssumed(outcome);
   json["untouched"] = CountUntouched(outcome);
+  json["drawing_errors"] = MakeDrawingErrorsJson(*model.product);
   json["parts"] = nlohmann::ordered_json::array();
   for (const PartResult& part : outcome.parts) {
     json["parts"].push_back(ToJson(model, part));
@@ -170,6 +172,7 @@ void PrintAssemblyJson(const Model& model, const SessionReport& report, const Le
 void PrintAssemblyTable(const Model& model, const SessionReport& report) {
   const RunOutcome& outcome = report.run;
   PrintParts(model, outcome);
+  PrintDrawingErrors(*model.product, false);
   const std::size_t allowed = CountByAllowance(outcome);
   const std::size_t untouched = CountUntouched(outcome);
   std::string apart = allowed > 0 ? fmt::format(", {} of them only by an allowance", allowed) : "";

@@ -9,6 +9,7 @@
 
 #include "app/output/text_layout.h"
 #include "app/output/text_table.h"
+#include "app/product/drawing_errors_report.h"
 #include "base/crash_note.h"
 #include "base/units.h"
 #include "mates/drawn_volumes.h"
@@ -35,8 +36,17 @@ std::vector<SharedVolume> ListShared(const Product& product, const Selection& se
   return list;
 }
 
+ErrorFilter MakeFilter(const Selection& selection) {
+  return [&selection](const product::DrawingError& error) {
+    return selection.Has(error.a) || selection.Has(error.b);
+  };
+}
+
 /** What is made of an overlap: "pin 3 mm in hole 2.9 mm: press fit as drawn, 100 um". */
 std::string Describe(const Product& product, const SharedVolume& shared) {
+  if (product::FindDrawingError(product, shared.a, shared.b) != nullptr) {
+    return "an error of the drawing: no joint of this kind and size is as deep";
+  }
   if (!shared.mate.is_valid()) {
     return "an overlap: what goes in last needs an allowance of this depth";
   }
@@ -140,6 +150,7 @@ std::vector<FlexiblePart> ListFlexible(const Product& product, const Selection& 
 }  // namespace
 
 void AddOverlaps(const Product& product, const Selection& selection, WorkWatch* watch, Json* json) {
+  (*json)["drawing_errors"] = MakeDrawingErrorsJson(product, MakeFilter(selection));
   Json& overlaps = (*json)["overlaps"] = Json::array();
   for (const SharedVolume& shared : ListShared(product, selection, watch)) {
     overlaps.push_back({{"a", shared.a.value()},
@@ -165,6 +176,7 @@ void AddOverlaps(const Product& product, const Selection& selection, WorkWatch* 
 
 void PrintOverlaps(const Product& product, const Selection& selection, bool is_all,
                    WorkWatch* watch) {
+  PrintDrawingErrors(product, is_all, MakeFilter(selection));
   const std::vector<SharedVolume> shared = ListShared(product, selection, watch);
   if (!shared.empty()) {
     PrintShared(product, shared, is_all);

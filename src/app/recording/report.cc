@@ -47,7 +47,16 @@ Result<std::string> MakeReasons(record::Reader* reader, const ReportOptions& opt
 
 Result<evidence::Summary> ReadSummary(record::Reader* reader) {
   const Busy busy("reading the record");
-  return evidence::Summarise(reader);
+  auto summary = evidence::Summarise(reader);
+  if (!summary || !summary->product || !summary->damage.empty()) {
+    return summary;
+  }
+  auto errors = session::ListDrawingErrors(reader, *summary->product);
+  if (!errors) {
+    return Unexpected(errors.error());
+  }
+  summary->product->drawing_errors = *std::move(errors);
+  return summary;
 }
 
 /** @returns what is damaged in the record; empty: nothing. */

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/product/drawing_errors_report.h"
 #include "base/parse_json.h"
 #include "base/units.h"
 #include "evidence/picture.h"
@@ -120,6 +121,13 @@ std::string MakeHead(const Summary& summary, std::size_t left_out) {
         "<p class=\"verdict\"><span class=\"bad\">{}</span> {} no way in: see <a "
         "href=\"#left-out\">what stops {}</a>.</p>",
         left_out, left_out == 1 ? "part has" : "parts have", left_out == 1 ? "it" : "them");
+  }
+  if (summary.product && !summary.product->drawing_errors.empty()) {
+    const std::size_t errors = summary.product->drawing_errors.size();
+    html += fmt::format(
+        "<p class=\"verdict\"><span class=\"bad\">{} {} of the drawing</span>: see <a "
+        "href=\"#drawing-errors\">which parts are drawn in one another</a>.</p>",
+        errors, errors == 1 ? "error" : "errors");
   }
   if (!summary.damage.empty()) {
     html += fmt::format(
@@ -395,12 +403,14 @@ std::string MakeSource(const Summary& summary) {
 }  // namespace
 
 std::string MakeReportPage(const Summary& summary, const ReportedLeftOut& left_out) {
-  return pages::MakeHtmlPage(MetaOf(summary, "product") + ": assembly report",
-                             MakeHead(summary, left_out.count) + MakeProductPicture(summary) +
-                                 left_out.section + MakeSequence(summary) + MakeWays(summary) +
-                                 MakeForces(summary) + MakeFits(summary) + MakeGiven(summary) +
-                                 MakeLoops(summary) + MakeIncidents(summary) + MakeSource(summary),
-                             kStyle);
+  return pages::MakeHtmlPage(
+      MetaOf(summary, "product") + ": assembly report",
+      MakeHead(summary, left_out.count) +
+          (summary.product ? MakeDrawingErrorsSection(*summary.product) : std::string()) +
+          MakeProductPicture(summary) + left_out.section + MakeSequence(summary) +
+          MakeWays(summary) + MakeForces(summary) + MakeFits(summary) + MakeGiven(summary) +
+          MakeLoops(summary) + MakeIncidents(summary) + MakeSource(summary),
+      kStyle);
 }
 
 }  // namespace hvas::app

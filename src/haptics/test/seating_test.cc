@@ -1,8 +1,12 @@
 // Being in place: however far the hand pushes on, and when a part is let go of beside its place.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -91,7 +95,7 @@ LetGo LetGoBeside(const Vec3& beside, double finish_distance, bool is_blocked = 
   TickOptions options;
   options.guidance.finish_distance = finish_distance;
   options.condition = Condition::kCollision;  // nothing draws it away from where it is held
-  options.guidance.loose_seat_distance = 0;
+  options.guidance.match_distance = 0;
   GasketRig rig(beside, options);
   if (is_blocked) {
     static const auto pin =
@@ -144,6 +148,105 @@ TEST(Seating, IsNotFinishedWhereTheFitHoldsThePart) {
   const LetGo let_go = rig.tick->Drop();
   EXPECT_FALSE(let_go.is_in_place);
   EXPECT_NEAR(let_go.to_place, rig.hand->last().X_WD.p().z(), 0.05e-3);
+}
+
+/** A block without a mate on a table, 20 mm above its place; what is left out does not draw it. */
+struct LooseRig : HeldRig {
+  static constexpr double kHalf = 10e-3;
+
+  explicit LooseRig(TickOptions the_options = {}) : HeldRig(std::move(the_options)) {
+    static const auto table =
+        contact::testing::Build(contact::testing::Block(Vec3(0.1, 0.1, 0.02)));
+    static const auto block =
+        contact::testing::Build(contact::testing::Block(Vec3::Constant(kHalf)));
+    scene.Add(table, Pose(Vec3(0, 0, -0.02)));
+    Place(block, Pose(Vec3(0, 0, kHalf + 20e-3)));
+    part.mass = 0.06;
+    part.I_BBcm_B = 4e-6 * Mat3::Identity();
+    part.X_WB_goal = Pose(Vec3(0, 0, kHalf));
+  }
+
+  /** First tick that is matched, and first that is seated; -1: none. */
+  [[nodiscard]] std::pair<int, int> FindEvents() const {
+    int matched = -1;
+    int seated = -1;
+    for (std::size_t i = 0; i < hand->samples.size(); ++i) {
+      const TickOutput& out = hand->samples[i].out;
+      matched = matched < 0 && out.is_matched ? static_cast<int>(i) : matched;
+      seated = seated < 0 && out.state == HoldState::kSeated ? static_cast<int>(i) : seated;
+    }
+    return {matched, seated};
+  }
+
+  [[nodiscard]] double CalcDistance(int i) const {
+    return (hand->samples[static_cast<std::size_t>(i)].out.X_WD.p() - part.X_WB_goal.p()).norm();
+  }
+};
+
+// In all conditions: what is not led by an axis is matched 3 mm from its place, and seated in it.
+TEST(Seating, W7PartIsMatchedThreeMillimetresFromItsPlaceAndSeatedByItsPose) {
+  for (const Condition condition : {Condition::kHybrid, Condition::kCollision}) {
+    for (const double smallest : {std::numeric_limits<double>::infinity(), 0.6e-3}) {
+      for (const double aside : {-2e-3, 0.5e-3, 2.5e-3}) {
+        TickOptions options;
+        options.condition = condition;
+        LooseRig rig(options);
+        rig.part.smallest_guide = smallest;
+        rig.Take();
+        rig.hand->MoveSoftly(Vec3(aside, 0, -20e-3), 1);
+        rig.hand->Wait(1.5);
+        const auto [matched, seated] = rig.FindEvents();
+        ASSERT_GE(matched, 0) << aside;
+        ASSERT_GT(seated, matched) << aside;
+        EXPECT_NEAR(rig.CalcDistance(matched), 3e-3, 0.1e-3);
+        EXPECT_LE(rig.CalcDistance(seated), std::min(0.15e-3, 0.1 * smallest) + 1e-6) << aside;
+        EXPECT_EQ(rig.tick->Drop().X_WB.p(), rig.part.X_WB_goal.p());
+      }
+    }
+  }
+}
+
+TEST(Seating, PartIsNotMatchedWhereSomethingIsInBetweenNorSeatedBesideIt) {
+  LooseRig rig;
+  static const auto step =
+      contact::testing::Build(contact::testing::Block(Vec3(5e-3, 5e-3, 0.5e-3)));
+  rig.scene.Add(step, Pose(Vec3(0, 0, 0.5e-3)));  // 1 mm high, where the part belongs.
+  rig.Take();
+  rig.hand->MoveSoftly(Vec3(0, 0, -21e-3), 1);
+  rig.hand->Wait(1);
+  EXPECT_EQ(rig.FindEvents(), std::pair(-1, -1));
+  EXPECT_FALSE(rig.tick->Drop().is_in_place);
+}
+
+// Nothing but the hand brings a part past what gives: it feels that force, or the part is not in.
+TEST(Seating, PartThatGivesIsSeatedOnlyOnceTheHandHasFeltItsForce) {
+  for (const double beyond : {0.0, 60e-3}) {
+    LooseRig rig;
+    auto curve = std::make_shared<GivingCurve>();
+    curve->stiffness = 40e3;
+    curve->friction = 0.3;
+    curve->spacing = 0.1e-3;
+    for (int i = 0; i <= 25; ++i) {  // A bead of 1 mm, the last 2.5 mm before its place.
+      curve->given.push_back(1e-3 * std::sin(std::numbers::pi * i / 25));
+    }
+    rig.part.gives = {{curve, 1e-3}};
+    const double peak = CalcGivingPeak(*curve).in;
+    ASSERT_GT(peak, 20);
+    rig.Take();
+    rig.hand->MoveSoftly(Vec3(0, 0, -20e-3), 1);
+    rig.hand->Wait(0.5);
+    EXPECT_LT(rig.FindEvents().second, 0) << "a hand that does not push does not bring it in";
+    rig.hand->MoveSoftly(Vec3(0, 0, -beyond), 1);
+    rig.hand->Wait(0.5);
+    double felt = 0;
+    for (const testing::Sample& sample : rig.hand->samples) {
+      felt = std::max(felt, sample.out.axial_true);
+    }
+    if (rig.FindEvents().second >= 0) {
+      EXPECT_GT(felt, 0.8 * peak);
+    }
+    EXPECT_EQ(rig.FindEvents().second >= 0, beyond > 0);
+  }
 }
 
 }  // namespace

@@ -23,9 +23,10 @@ using testing::AddRectangle;
 
 const Pose kPlace(Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, 2) / 3)), Vec3(0.1, 0.2, 0.3));
 
-/** A flange on a motor, face on face, with a pilot of 22 mm or none, and screws at the given
- * points. */
-Product MakeFlange(const std::vector<Vec3>& points, bool has_pilot, const char* screw_name) {
+/** A flange on a motor, face on face, with a pilot of 22 mm or none, and screws of 3 mm at the
+ * given points. @param motor_radius  Of the motor's holes: by default the core of an M3. */
+Product MakeFlange(const std::vector<Vec3>& points, bool has_pilot, const char* screw_name,
+                   double motor_radius = 1.25e-3) {
   Product product;
   AddPart(&product, "flange");
   AddPart(&product, "motor");
@@ -35,7 +36,7 @@ Product MakeFlange(const std::vector<Vec3>& points, bool has_pilot, const char* 
   AddRectangle(motor, Vec3::Zero(), Vec3::UnitZ(), 40e-3, 40e-3);
   for (const Vec3& p : points) {
     AddCylinder(flange, FeatureKind::kHole, p, Vec3::UnitZ(), 1.7e-3, 0, 5e-3);
-    AddCylinder(motor, FeatureKind::kHole, p, Vec3::UnitZ(), 1.25e-3, -8e-3, 0);
+    AddCylinder(motor, FeatureKind::kHole, p, Vec3::UnitZ(), motor_radius, -8e-3, 0);
   }
   if (has_pilot) {
     AddCylinder(flange, FeatureKind::kHole, Vec3::Zero(), Vec3::UnitZ(), 11e-3, 0, 5e-3);
@@ -90,7 +91,8 @@ TEST(FastenedJoints, OneScrewOnAFaceLeavesATurnAndFourOffACircleHaveNone) {
 
 TEST(FastenedJoints, ASingleShaftInTwoPartsIsNoFastenerAndTwoPinsAre) {
   EXPECT_TRUE(FindFastenedJoints(MakeFlange({kSquare[0]}, false, "axle")).empty());
-  EXPECT_EQ(FindFastenedJoints(MakeFlange({kSquare[0], kSquare[2]}, false, "pin")).size(), 1U);
+  EXPECT_EQ(FindFastenedJoints(MakeFlange({kSquare[0], kSquare[2]}, false, "pin", 1.495e-3)).size(),
+            1U);
 }
 
 /** Plates of 5 mm, one on the other, whose holes are off a line by turns, with bolts in them. The

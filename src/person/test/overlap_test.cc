@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "mates/drawing_errors.h"
 #include "person/test/session.h"
 #include "simulation/test/small_models.h"
 
@@ -224,6 +225,37 @@ TEST(OverlapTest, WayThatNeedsALittleMoreThanTheDrawnDepthIsTakenAndThatIsSaid) 
   EXPECT_EQ(CompileProduct(sequence::testing::StateRigid(TaperedPocket(0.1e-3, 0.6e-3)))
                 ->sequence.gaps.size(),
             1U);
+}
+
+TEST(OverlapTest, PartOfAnErrorOfTheDrawingIsLeftOutWithoutASearchAndTheOthersGoIn) {
+  for (const int count : {2, 5}) {
+    Product product = sequence::testing::BlocksOnPlate(count + 1);
+    for (int i = 1; i <= count; ++i) {  // All but the last one are 5 mm deep in the plate.
+      spatial::Pose& X_WB = product.occurrences[static_cast<std::size_t>(i)].X_WB;
+      X_WB = {X_WB.q(), X_WB.p() - 5e-3 * Vec3::UnitZ()};
+    }
+    sequence::testing::Complete(&product);
+    product.drawing_errors = mates::ListDrawingErrors(product);
+    EXPECT_EQ(product.drawing_errors.size(), static_cast<std::size_t>(count));
+    const auto model = CompileProduct(std::move(product));
+    ASSERT_EQ(model->sequence.gaps.size(), static_cast<std::size_t>(count));
+    for (const sequence::SequenceGap& gap : model->sequence.gaps) {
+      EXPECT_PRED_FORMAT2(IsSubstring, "an error of the drawing", gap.reason);
+      EXPECT_PRED_FORMAT2(IsSubstring, "5.000 mm deep", gap.reason);
+    }
+    EXPECT_NE(
+        sequence::FindInsertion(model->sequence, OccurrenceId(static_cast<std::size_t>(count + 1))),
+        nullptr);
+  }
+}
+
+TEST(OverlapTest, NoAllowanceIsMoreThanAFitOfTheSizeHas) {
+  // A pocket that leans in by 0.5 mm beyond an overlap of 1.4 mm: 1.65 mm is the most at this size.
+  const auto model = CompileProduct(sequence::testing::StateRigid(TaperedPocket(1.4e-3, 0.5e-3)));
+  EXPECT_EQ(model->sequence.gaps.size(), 1U);
+  ASSERT_EQ(model->sequence.overlaps.size(), 1U);
+  EXPECT_NEAR(model->sequence.overlaps[0].largest, 1.65e-3, 1e-9);
+  EXPECT_LE(model->sequence.overlaps[0].allowed, 1.65e-3 + 10e-6);
 }
 
 std::array<Vec3, 4> Reversed(const std::array<Vec3, 4>& p) {

@@ -168,8 +168,8 @@ TEST(Polygons, TeethWithFlatFlanksAreASplineWithTheirNumber) {
     double bottom, top, width;
   };
 
-  for (const Size& size : {Size{6, 11.5e-3, 13e-3, 6e-3}, Size{8, 16e-3, 18e-3, 6e-3},
-                           Size{8, 26e-3, 29e-3, 10e-3}}) {
+  for (const Size& size :
+       {Size{6, 11.5e-3, 13e-3, 6e-3}, Size{8, 16e-3, 18e-3, 6e-3}, Size{8, 26e-3, 29e-3, 10e-3}}) {
     SCOPED_TRACE(size.teeth);
     Part shaft = MakeSpline(size.teeth, size.bottom, size.top, size.width, false);
     const auto found = Find(&shaft);
