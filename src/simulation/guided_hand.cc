@@ -12,6 +12,7 @@ namespace {
 
 // Choices, as docs/algorithms/guided_hand.md explains.
 constexpr double kCarrySpeed = 0.45;       // [m/s]
+constexpr double kFastest = 1.3;           // [m/s]: the peak of the fastest reach
 constexpr double kApproachSpeed = 0.15;    // [m/s]
 constexpr double kInsertSpeed = 0.04;      // [m/s]
 constexpr double kStandOff = 4e-3;         // [m] before anything engages, from where it goes slowly
@@ -29,6 +30,7 @@ constexpr double kMostTurn = 0.2;          // [rad]
 constexpr double kSlackTime = 0.08;        // [s]
 constexpr double kSpeedTime = 0.02;        // [s] over which the speed is measured
 constexpr double kSlowShare = 0.4;         // Of the speed that it wants; slower presses harder.
+constexpr double kFastShare = 2;           // Of the speed that it wants; faster, it has given way.
 constexpr double kFirstPush = 2;           // [N]
 constexpr double kPushRate = 40;           // [N/s]
 constexpr double kLeadPerForce = 1.25e-3;  // [m/N]: arm and coupling, one after the other
@@ -141,14 +143,16 @@ void GuidedHand::Press(double speed, double wanted_speed) noexcept {
   const bool is_slow = speed < kSlowShare * wanted_speed;
   push_ = is_slow ? std::min(kMostHandForce, push_ + kPushRate * dt_)
                   : std::max(kFirstPush, push_ - 2 * kPushRate * dt_);
-  if (speed > 2 * wanted_speed) {
-    push_ = kFirstPush;  // What gave way is not thrown.
+  if (speed > kFastShare * wanted_speed) {
+    // What gave way runs into what the hand was ahead by, and is not thrown.
+    push_ = std::clamp(std::abs(travel_ - seen_) / kLeadPerForce, kFirstPush, kMostHandForce);
   }
 }
 
 void GuidedHand::Advance(double wanted_speed) noexcept {
   const double most = push_ * kLeadPerForce;
-  const double next = travel_ + Sense() * wanted_speed * dt_;
+  const bool is_fast = Sense() * speed_ > kFastShare * wanted_speed;
+  const double next = travel_ + (is_fast ? 0 : Sense() * wanted_speed * dt_);
   travel_ = std::clamp(next, seen_ - most, seen_ + most);
 }
 
@@ -283,6 +287,7 @@ device::DeviceState GuidedHand::Step(const OperatorInput& input) noexcept {
   const Vec3 p_before = p_ref_;
   StepPhase(input);
   v_ref_ = (p_ref_ - p_before) / dt_;
+  v_ref_ *= kFastest / std::max(kFastest, v_ref_.norm());
   HandReference reference;
   reference.X_WR = {q_ref_, p_ref_};
   reference.v_R_W = v_ref_;

@@ -80,8 +80,8 @@ TEST(LoopThreadsTest, X3TwoHandsShareASession) {  // X4; meant for the thread sa
   SimulatedPerson left({}, 1, simulation::StartOfHand(*model));
   SimulatedPerson right({}, 2, simulation::StartOfHand(*model));
   TicksOfHands hands;
-  AssemblyRun run(&simulation, simulation::TaskOperators{&left, &right}, &hands);
-  FlightRecorder flight(1000, 2);
+  simulation::AssemblyRun run(&simulation, simulation::TaskOperators{&left, &right}, &hands);
+  simulation::FlightRecorder flight(1000, 2);
   std::size_t hands_in_frame = 0;
   simulation::Execution execution = run.MakeExecution({&left, &right}, 2);
   execution.flight = &flight;

@@ -30,7 +30,7 @@ class X1TableSubassemblyTest : public ::testing::Test {
   X1TableSubassemblyTest()
       : model_(*PegInCarrierInCupModel()),
         simulation_(PegInCarrierInCupModel(), haptics::TickOptions()),
-        run_(&simulation_, TaskOperators{}, &watch_) {
+        run_(&simulation_, simulation::TaskOperators{}, &watch_) {
     simulation_.physics().AllowJoining(0);
     simulation_.physics().AllowTakingOut(0);
     run_.Advance();
@@ -136,8 +136,8 @@ TEST_F(X1TableSubassemblyTest, X1PartsPutTogetherOnTheTableAreOneBody) {
 }
 
 TEST_F(X1TableSubassemblyTest, X1WithoutLeaveToJoinAPegOnTheCarrierIsByItself) {
-  Simulation other(PegInCarrierInCupModel(), haptics::TickOptions());
-  AssemblyRun run(&other, simulation::TaskOperators{}, nullptr);
+  simulation::Simulation other(PegInCarrierInCupModel(), haptics::TickOptions());
+  simulation::AssemblyRun run(&other, simulation::TaskOperators{}, nullptr);
   run.Advance();
   const Vec3 p_goal = CalcPegGoal();
   WaypointHand hand(CarryOver(CentreOf(kCarriedPeg), p_goal, p_goal.z() + 60e-3));
@@ -229,7 +229,7 @@ TEST_F(X1TableSubassemblyTest, X1SubassemblyIsThereAfterRestoringTheParts) {
   const std::vector<simulation::PartState> parts = physics().parts();
   simulation::Simulation again(PegInCarrierInCupModel(), haptics::TickOptions());
   again.Restore(parts);
-  AssemblyRun run(&again, simulation::TaskOperators{}, nullptr);
+  simulation::AssemblyRun run(&again, simulation::TaskOperators{}, nullptr);
   run.Resume(1);
   const Vec3 p_from = CentreOfBoth();
   WaypointHand hand(CarryOver(p_from, p_from + Vec3(-0.12, 0, 0.02), p_from.z() + 60e-3));

@@ -83,7 +83,7 @@ class TakeOutTest : public ::testing::Test {
 };
 
 TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
-  AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
+  simulation::AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(0, 0, 60e-3), &hands);
@@ -102,7 +102,7 @@ TEST_F(TakeOutTest, PegComesOutOfItsBoreAndItsStepIsToBeDoneAgain) {
 }
 
 TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
-  AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
+  simulation::AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   PullWhatIsThere(Vec3(0, 0, 60e-3), &hands);  // nobody has said that it may
@@ -117,7 +117,7 @@ TEST_F(TakeOutTest, HandOfADeviceTakesOutWhatItClosesOn) {
 }
 
 TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
-  AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
+  simulation::AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(0, 0, 1e-3), &hands);
@@ -127,7 +127,7 @@ TEST_F(TakeOutTest, PegThatIsHeldAndLetGoIsWhereItWas) {
 }
 
 TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
-  AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
+  simulation::AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
   hands.Advance();
   const Pose before = pose();
   Pull(Vec3(40e-3, 0, 0), &hands);
@@ -137,7 +137,7 @@ TEST_F(TakeOutTest, WallOfTheBoreHoldsThePegBackSideways) {
 }
 
 TEST_F(TakeOutTest, PersonPutsItInAgain) {
-  AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
+  simulation::AssemblyRun hands(&session_.simulation, simulation::TaskOperators{}, &watch_);
   hands.Advance();
   Pull(Vec3(0, 30e-3, 60e-3), &hands);
   ASSERT_EQ(session_.simulation.physics().placement(OccurrenceId(kTakenPeg)),

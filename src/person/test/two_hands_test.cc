@@ -496,8 +496,8 @@ TEST(TwoPersonsTest, WhatAnotherHandHasPutInItsPlaceIsDone) {
                             simulation::StartOfHand(*model));  // its tasks do not come from the run
   SimulatedPerson partner({}, 2, simulation::StartOfHand(*model));
   Assign(simulation, kSecond, &by_itself);
-  AssemblyRun run(&simulation, simulation::TaskOperators{nullptr, &partner}, nullptr);
-  Execution execution = run.MakeExecution({&by_itself, &partner}, 60);
+  simulation::AssemblyRun run(&simulation, simulation::TaskOperators{nullptr, &partner}, nullptr);
+  simulation::Execution execution = run.MakeExecution({&by_itself, &partner}, 60);
   execution.advance = [&] {
     if (by_itself.finished_count() > 0) {
       run.Advance();

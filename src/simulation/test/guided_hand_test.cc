@@ -16,7 +16,7 @@ using product::OccurrenceId;
 using testing::CompileFast;
 using testing::PegInBlockModel;
 
-const OccurrenceId kPeg(1);
+const OccurrenceId kGuidedPeg(1);
 constexpr double kLimit = 120;  // [s] of session time
 
 haptics::TickOptions GuidedTick(double rate_hz) {
@@ -79,7 +79,7 @@ TEST(GuidedHandTest, PushesAPressFitHomeAndSaysThatItNeedsAPress) {
 std::shared_ptr<const Model> PegFromTheClosedSide() {
   auto model = std::make_shared<Model>(*PegInBlockModel());
   for (sequence::SequenceStep& step : model->sequence.steps) {
-    if (step.occurrence == kPeg) {
+    if (step.occurrence == kGuidedPeg) {
       step.extraction_W = -step.extraction_W;
     }
   }
@@ -102,11 +102,11 @@ TEST(GuidedHandTest, IsHeldUpByAWallAndSaysWhereAndByWhat) {
 std::shared_ptr<const Model> PegWithoutAWay() {
   auto model = std::make_shared<Model>(*PegInBlockModel());
   for (sequence::SequenceStep& step : model->sequence.steps) {
-    if (step.occurrence == kPeg) {
+    if (step.occurrence == kGuidedPeg) {
       step.kind = sequence::SequenceStep::Kind::kAssume;
     }
   }
-  model->sequence.gaps.push_back({kPeg, "no way was found"});
+  model->sequence.gaps.push_back({kGuidedPeg, "no way was found"});
   return model;
 }
 
@@ -117,7 +117,7 @@ TEST(GuidedHandTest, APartWithoutAWayIsAssumedWithItsReason) {
   EXPECT_FALSE(peg.is_seated);
   EXPECT_TRUE(peg.is_assumed);
   EXPECT_EQ(peg.reason, "no way was found");
-  EXPECT_EQ(guided.simulation.physics().placement(kPeg), Placement::kPlaced);
+  EXPECT_EQ(guided.simulation.physics().placement(kGuidedPeg), Placement::kPlaced);
 }
 
 }  // namespace
