@@ -358,7 +358,7 @@ class Work {
         continue;
       }
       progress_.is_held = true;
-      hvas::person::HandReference reference;
+      hvas::simulation::HandReference reference;
       reference.X_WR = hvas::spatial::Pose((*run)->goal()) * (*run)->X_HB().Inverse();
       reference.is_gripping = true;
       for (const auto& row : (*run)->Step(reference, 10)) {

@@ -25,6 +25,13 @@ constexpr double kCalm = 5e-3;             // [m/s]
 constexpr double kMostWait = 1.5;          // [s] for a hand to come to its reference
 constexpr double kLearnTime = 0.1;         // [s] in which a weight is learned
 constexpr double kCorrectTime = 0.15;      // [s] in which an error of the part is corrected
+// [s], likewise of how it is turned: large parts swing slowly in the coupling.
+constexpr double kTurnCorrectTime = 1.5;
+constexpr double kBeside = 0.3e-3;        // [m] beside its way, where a part goes no further
+constexpr double kTurnedBeside = 0.02;    // [rad], likewise
+constexpr double kTurnRate = 0.5;         // [rad/s]: it turns no faster on its way
+constexpr double kMostTurnLead = 0.1;     // [rad] that the hand turns ahead of the part
+constexpr double kPatience = 60;          // [s] for a way, besides four times what it takes
 constexpr double kMostOffset = 0.02;       // [m]
 constexpr double kMostTurn = 0.2;          // [rad]
 constexpr double kSlackTime = 0.08;        // [s]
@@ -127,9 +134,8 @@ bool GuidedHand::FollowReaches() noexcept {
 }
 
 void GuidedHand::Correct(const spatial::Twist& error) noexcept {
-  const double share = dt_ / kCorrectTime;
-  offset_W_ += share * error.v;
-  turn_W_ += share * error.w;
+  offset_W_ += dt_ / kCorrectTime * error.v;
+  turn_W_ += dt_ / kTurnCorrectTime * error.w;
   offset_W_ *= std::min(1.0, kMostOffset / std::max(kMostOffset, offset_W_.norm()));
   turn_W_ *= std::min(1.0, kMostTurn / std::max(kMostTurn, turn_W_.norm()));
 }
@@ -175,10 +181,26 @@ void GuidedHand::TryAgain() noexcept {
     nearest_ = seen_;
     return;
   }
+  GiveUp();
+}
+
+void GuidedHand::GiveUp() noexcept {
   is_held_up_ = true;
   held_up_at_ = seen_;
   is_gripping_ = false;
   Begin(Phase::kRelease);
+}
+
+spatial::Pose GuidedHand::CalcLead() const noexcept {
+  if (task_.way == nullptr) {
+    return task_.WayAt(travel_);
+  }
+  // Along the tangent: around a bend, what the hand is ahead by would be beside the way.
+  const spatial::Pose X_WN = task_.WayAt(seen_);
+  const spatial::Twist rate = task_.way->RateAt(seen_);
+  Vec3 turn = (travel_ - seen_) * rate.w;
+  turn *= kMostTurnLead / std::max(kMostTurnLead, turn.norm());
+  return {spatial::RotationFromVector(turn) * X_WN.q(), X_WN.p() + (travel_ - seen_) * rate.v};
 }
 
 void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
@@ -194,7 +216,8 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
   const Vec3 d = task_.OutwardAt(seen_);
   Vec3 beside = X_WN.p() - X_WG.p();
   beside -= beside.dot(d) * d;
-  Correct({spatial::RotationBetween(X_WG.q(), X_WN.q()), beside});
+  const Vec3 turned = spatial::RotationBetween(X_WG.q(), X_WN.q());
+  Correct({turned, beside});
   if (is_backing_ && Sense() * (seen_ - back_to_) > 0) {
     is_backing_ = false;
     nearest_ = seen_;
@@ -205,11 +228,20 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
     BeginPutDown();
     return;
   }
-  const double wanted = seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed;
-  Press(Sense() * speed_, wanted);
-  Advance(wanted);
-  Refer(task_.WayAt(travel_));
-  if (IsHeldUp()) {
+  const double speed = seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed;
+  const double turns = task_.way != nullptr ? task_.way->RateAt(seen_).w.norm() : 0;
+  const double wanted = std::min(speed, kTurnRate / std::max(turns, kTurnRate / speed));
+  if (beside.norm() < kBeside && turned.norm() < kTurnedBeside) {
+    Press(Sense() * speed_, wanted);
+    Advance(wanted);
+  } else {
+    push_ = kFirstPush;
+    travel_ = seen_;  // It comes back onto its way first.
+  }
+  Refer(CalcLead());
+  if (phase_time_s_ > kPatience + 4 * outside / kInsertSpeed) {
+    GiveUp();
+  } else if (IsHeldUp()) {
     TryAgain();
   }
 }

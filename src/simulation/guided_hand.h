@@ -69,6 +69,10 @@ class GuidedHand final : public TaskOperator {
   [[nodiscard]] bool IsHeldUp() noexcept;
   /** Begins again from a little before where the part is held up, or gives it up there. */
   void TryAgain() noexcept;
+  /** Lets the part go where it is held up. */
+  void GiveUp() noexcept;
+  /** Where the reference is: ahead of the part along its way. */
+  [[nodiscard]] spatial::Pose CalcLead() const noexcept;
   /** Sets the reference to a pose of the part, with what was corrected. */
   void Refer(const spatial::Pose& X_WG) noexcept;
 

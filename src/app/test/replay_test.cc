@@ -45,8 +45,8 @@ std::shared_ptr<const simulation::Model> Bushing() {
 std::uint64_t RecordTwoHands(const std::shared_ptr<const simulation::Model>& model,
                              const std::filesystem::path& file) {
   std::vector<assembly::Hand> hands;
-  hands.push_back(*assembly::MakeHand(*model, {"emulated:openhaptics:touch_x", {}, 1}));
-  hands.push_back(*assembly::MakeHand(*model, {"emulated:haply", {}, 2}));
+  hands.push_back(*assembly::MakeHand(*model, {"emulated:openhaptics:touch_x", {}, 1, false, {}}));
+  hands.push_back(*assembly::MakeHand(*model, {"emulated:haply", {}, 2, false, {}}));
   device::EmulatedDevice& left = hands.front().opened.emulator->device();
   record::RecorderOptions options;
   options.path = file;
