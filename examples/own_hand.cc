@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   constexpr double kSpeed = 0.04;      // [m/s]
   constexpr double kMostLead = 15e-3;  // How far the hand goes ahead of a part that sticks [m].
   constexpr double kLimit_s = 30;
-  hvas::person::HandReference hand;
+  hvas::simulation::HandReference hand;
   hand.is_gripping = true;
   while (!(*run)->is_seated() && (*run)->last().t_s < kLimit_s) {
     const double* p = (*run)->last().X_WB;

@@ -142,7 +142,8 @@ class PartResult:
     occurrence: int
     path: str
     seated: bool
-    reason: str  # why not, where it is not
+    assumed: bool  # put in its place for the parts after it, as nothing brought it there
+    reason: str  # why it is not seated, where it is not
     note: str
     time: float  # [s]
     path_length: float  # [m]

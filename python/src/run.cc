@@ -184,6 +184,7 @@ py::object Describe(const simulation::PartResult& part, const Model& model) {
       "PartResult",
       py::dict(py::arg("occurrence") = part.occurrence.index(),
                py::arg("path") = PathOf(model, part.occurrence), py::arg("seated") = part.is_seated,
+               py::arg("assumed") = part.is_assumed,
                py::arg("reason") = part.reason, py::arg("note") = part.note,
                py::arg("time") = part.time, py::arg("path_length") = part.path,
                py::arg("peak_true") = part.peak_true, py::arg("peak_felt") = part.peak_felt,

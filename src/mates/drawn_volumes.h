@@ -9,8 +9,8 @@ namespace hvas::mates {
 
 /** Two faces of which one lies inside the other's part. */
 struct FaceOverlap {
-  product::FaceId a;       ///< Of the first part.
-  product::FaceId b;       ///< Of the second part.
+  product::FaceId a;       ///< Face of the first part.
+  product::FaceId b;       ///< Face of the second part.
   double depth{0};         ///< [m]
   bool is_coaxial{false};  ///< Shaft and hole about one axis: the depth is the radii's difference.
 };

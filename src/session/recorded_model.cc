@@ -359,6 +359,11 @@ Result<std::vector<product::OccurrenceId>> ListPartsWithoutStep(record::Reader* 
       has_step[part.index()] = true;
     }
   }
+  for (const sequence::SequenceStep& step : *steps) {
+    if (step.kind == sequence::SequenceStep::Kind::kAssume) {
+      has_step[step.occurrence.index()] = false;  // Also where it moves with a subassembly later.
+    }
+  }
   for (const auto kind : {product::AccessoryKind::kTool, product::AccessoryKind::kFixture,
                           product::AccessoryKind::kBench}) {
     for (const product::OccurrenceId id : product::ListAccessories(product, kind)) {

@@ -7,9 +7,7 @@
 namespace hvas::simulation {
 
 /** The greatest force with which a hand presses, pulls or carries [N]; the rest is for a press, a
- mallet or a hoist. A
- choice: half of what a standing adult pushes with one arm (EN 1005-3, table 1, 15th percentile).
- */
+ mallet or a hoist. A choice. */
 inline constexpr double kMostHandForce = 100;
 
 /** Impedance of an arm at the hand: mass, spring and damper between the hand and where it is meant

@@ -30,6 +30,8 @@ constexpr double kTurnCorrectTime = 1.5;
 constexpr double kBeside = 0.3e-3;        // [m] beside its way, where a part goes no further
 constexpr double kTurnedBeside = 0.02;    // [rad], likewise
 constexpr double kTurnRate = 0.5;         // [rad/s]: it turns no faster on its way
+constexpr double kThreadRate = 6;         // [rad/s], along a thread: about a turn a second
+constexpr double kMostTwistLead = 0.3;    // [rad], likewise where it tightens a thread
 constexpr double kMostTurnLead = 0.1;     // [rad] that the hand turns ahead of the part
 constexpr double kPatience = 60;          // [s] for a way, besides four times what it takes
 constexpr double kMostOffset = 0.02;       // [m]
@@ -199,7 +201,8 @@ spatial::Pose GuidedHand::CalcLead() const noexcept {
   const spatial::Pose X_WN = task_.WayAt(seen_);
   const spatial::Twist rate = task_.way->RateAt(seen_);
   Vec3 turn = (travel_ - seen_) * rate.w;
-  turn *= kMostTurnLead / std::max(kMostTurnLead, turn.norm());
+  const double most = task_.is_threaded ? kMostTwistLead : kMostTurnLead;
+  turn *= most / std::max(most, turn.norm());
   return {spatial::RotationFromVector(turn) * X_WN.q(), X_WN.p() + (travel_ - seen_) * rate.v};
 }
 
@@ -230,7 +233,8 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
   }
   const double speed = seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed;
   const double turns = task_.way != nullptr ? task_.way->RateAt(seen_).w.norm() : 0;
-  const double wanted = std::min(speed, kTurnRate / std::max(turns, kTurnRate / speed));
+  const double rate = task_.is_threaded ? kThreadRate : kTurnRate;
+  const double wanted = std::min(speed, rate / std::max(turns, rate / speed));
   if (beside.norm() < kBeside && turned.norm() < kTurnedBeside) {
     Press(Sense() * speed_, wanted);
     Advance(wanted);

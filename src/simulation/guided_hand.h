@@ -101,7 +101,7 @@ class GuidedHand final : public TaskOperator {
   Reaches reaches_;
   double dt_{1e-3};
   double phase_time_s_{0};
-  double travel_{0};   ///< Of the reference along the way [m].
+  double travel_{0};   ///< Travel of the reference along the way [m].
   double seen_{0};     ///< Travel of the part [m].
   double speed_{0};    ///< How fast the travel of the part changes, smoothed [m/s].
   double push_{0};     ///< [N]

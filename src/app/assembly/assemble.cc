@@ -73,7 +73,7 @@ int RunAssemble(const AssembleOptions& options) {
 }
 
 void AddAssemble(CLI::App* app, int* status) {
-  CLI::App* command = app->add_subcommand("assemble", "Let a simulated person assemble a product");
+  CLI::App* command = app->add_subcommand("assemble", "Assemble a product along its planned ways");
   const auto options = std::make_shared<AssembleOptions>();
   command->add_option("file", options->load.file, "STEP, IGES or mesh file, or a folder of meshes")
       ->required();

@@ -107,7 +107,8 @@ TEST(AssembleTest, GuidedBushingStopsAtTheCoverThatWasPutOnTooSoon) {  // N3
                                              "bushing 1,drive gear shaft,cover,bushing 3"};
   const auto run_with = [&](const std::string& condition, const std::string& limit) {
     std::vector<std::string> arguments = wrong_order;
-    arguments.insert(arguments.end(), {"--condition", condition, "--limit", limit});
+    arguments.insert(arguments.end(),
+                     {"--condition", condition, "--limit", limit, "--operator", "person"});
     const json run = RunHvasJson(arguments, 2);
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, "/bushing 3",
                         run["parts"][4]["name"].get<std::string>());

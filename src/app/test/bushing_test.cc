@@ -25,6 +25,7 @@ using testing::ProductFile;
 using testing::RunHvasJson;
 
 constexpr std::uint32_t kShaft = 2;  // its occurrence in bushing.step
+constexpr double kDeviceForce = 7.9;  // [N]: that of a simulated person's device.
 constexpr auto kMating = static_cast<std::uint8_t>(haptics::HoldState::kMating);
 
 /** Assembles the rig of W7 with a fit of its shaft. */
@@ -32,7 +33,8 @@ json AssembleBushing(const std::string& fit, int seed, const std::string& record
                      const std::string& force_map = "published") {
   std::vector<std::string> arguments{
       "assemble", ProductFile("bushing"), "--fit",       "shaft=" + fit,
-      "--seed",   std::to_string(seed),   "--force-map", force_map};
+      "--seed",   std::to_string(seed),   "--force-map", force_map,
+      "--operator", "person"};
   if (!record.empty()) {
     arguments.insert(arguments.end(), {"--record", record});
   }
@@ -131,7 +133,7 @@ TEST_P(BushingTest, W7EveryPartGoesInExactlyWithoutAJumpOfForce) {
   const TemporaryFolder folder;
   const std::string file = (folder / "session.hvasrec").string();
   const json run = AssembleBushing(GetParam(), 1, file);
-  ExpectAllSeated(run, 3);
+  ExpectAllSeated(run, 3, kDeviceForce);
   const Insertion insertion = ReadInsertion(file);
   EXPECT_LE(insertion.largest_jump, 0.5);
   EXPECT_LE(insertion.deepest, 50e-6);
@@ -269,7 +271,7 @@ void ExpectThreeKindsOfCurve(int last_seed) {
        {std::pair{"H7/g6", Feel::kNothing}, {"H7/k6", Feel::kStairs}, {"H7/p6", Feel::kSlope}}) {
     for (int seed = 1; seed <= last_seed; ++seed) {
       std::filesystem::remove(file);
-      ExpectAllSeated(AssembleBushing(fit, seed, file.string()), 3);
+      ExpectAllSeated(AssembleBushing(fit, seed, file.string()), 3, kDeviceForce);
       EXPECT_EQ(Classify(ReadInsertion(file)), feel) << fit << ", seed " << seed;
     }
   }
@@ -332,7 +334,7 @@ TEST(FitForceTest, W10WithThePapersMapTheHandGetsTheCurvesOfFigure8) {
   const auto felt_with = [&](const char* fit) {
     const auto file = folder / "session";
     std::filesystem::remove(file);
-    ExpectAllSeated(AssembleBushing(fit, 1, file.string(), "paper"), 3);
+    ExpectAllSeated(AssembleBushing(fit, 1, file.string(), "paper"), 3, kDeviceForce);
     return CalcProfile(ReadInsertion(file), &Insertion::Point::felt);
   };
   const std::vector<double> clearance = felt_with("H7/g6");

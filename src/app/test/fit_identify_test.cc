@@ -47,7 +47,7 @@ TEST(FitIdentifyTest, RefusesWhatIsNoExperiment) {
 TEST(ForceMapTest, MapsChangeWhatIsFeltAndNotWhatIsTrue) {
   const auto press = [](const std::string& map) {
     const json run = RunHvasJson(
-        {"assemble", ProductFile("bushing"), "--fit", "shaft=H7/p6", "--force-map", map});
+        {"assemble", ProductFile("bushing"), "--fit", "shaft=H7/p6", "--force-map", map, "--operator", "person"});
     EXPECT_EQ(run["force_map"], map);
     EXPECT_EQ(run["seated"], 3);
     return run["parts"][2];

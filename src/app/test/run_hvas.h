@@ -53,8 +53,9 @@ Ran ExpectRefusal(const std::vector<std::string>& arguments, const std::vector<s
 [[nodiscard]] std::string WriteShortStudy(const std::string& id,
                                           const std::filesystem::path& folder);
 
-/** Expects that `hvas assemble --json` has put all parts exactly in their place. */
-void ExpectAllSeated(const nlohmann::json& run, std::size_t count);
+/** Expects that `hvas assemble --json` has put all parts exactly in their place.
+ @param most_felt_n  What the hand's device can show; that of a guided hand 120 N. */
+void ExpectAllSeated(const nlohmann::json& run, std::size_t count, double most_felt_n = 120);
 
 [[nodiscard]] std::string ReadText(const std::filesystem::path& file);
 
