@@ -184,13 +184,13 @@ py::object Describe(const simulation::PartResult& part, const Model& model) {
       "PartResult",
       py::dict(py::arg("occurrence") = part.occurrence.index(),
                py::arg("path") = PathOf(model, part.occurrence), py::arg("seated") = part.is_seated,
-               py::arg("assumed") = part.is_assumed,
-               py::arg("reason") = part.reason, py::arg("note") = part.note,
-               py::arg("time") = part.time, py::arg("path_length") = part.path,
-               py::arg("peak_true") = part.peak_true, py::arg("peak_felt") = part.peak_felt,
-               py::arg("fit_true") = part.fit_true, py::arg("fit_felt") = part.fit_felt,
-               py::arg("preload") = part.preload, py::arg("tightening") = part.tightening,
-               py::arg("deepest") = part.deepest, py::arg("arrival") = part.arrival));
+               py::arg("assumed") = part.is_assumed, py::arg("reason") = part.reason,
+               py::arg("note") = part.note, py::arg("time") = part.time,
+               py::arg("path_length") = part.path, py::arg("peak_true") = part.peak_true,
+               py::arg("peak_felt") = part.peak_felt, py::arg("fit_true") = part.fit_true,
+               py::arg("fit_felt") = part.fit_felt, py::arg("preload") = part.preload,
+               py::arg("tightening") = part.tightening, py::arg("deepest") = part.deepest,
+               py::arg("arrival") = part.arrival));
 }
 
 py::object Assemble(const ModelHandle& handle, const py::object& seed,

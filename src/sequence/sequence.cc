@@ -103,7 +103,7 @@ void Planner::GiveUpOne(Level* level, std::vector<SequenceStep>* removed, Sequen
   const OccurrenceId blocker = graph->FindGreatestBlocker();
   const OccurrenceId id = blocker.is_valid() ? blocker : level->rest.front();
   const std::string no_room = extraction_.ExplainBending(id);
-  std::string reason = (no_room.empty() ? extraction_.ExplainStuck(id) : no_room) +
+  std::string reason = extraction_.ExplainStuck(id) + (no_room.empty() ? "" : "; " + no_room) +
                        extraction_.ExplainTurning(id) + extraction_.ExplainPassing();
   if (graph->is_limited()) {
     reason += "; the search for parts that come out together was ended";

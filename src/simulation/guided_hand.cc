@@ -11,29 +11,29 @@ namespace hvas::simulation {
 namespace {
 
 // Choices, as docs/algorithms/guided_hand.md explains.
-constexpr double kCarrySpeed = 0.45;       // [m/s]
-constexpr double kFastest = 1.3;           // [m/s]: the peak of the fastest reach
-constexpr double kApproachSpeed = 0.15;    // [m/s]
-constexpr double kInsertSpeed = 0.04;      // [m/s]
-constexpr double kStandOff = 4e-3;         // [m] before anything engages, from where it goes slowly
-constexpr double kGraspTime = 0.2;         // [s]
-constexpr double kSettleTime = 0.25;       // [s]
-constexpr double kReleaseTime = 0.1;       // [s]
-constexpr double kPutDownGap = 2e-3;       // [m] above the table
-constexpr double kAtReference = 0.2e-3;    // [m]: the hand is there
-constexpr double kCalm = 5e-3;             // [m/s]
-constexpr double kMostWait = 1.5;          // [s] for a hand to come to its reference
-constexpr double kLearnTime = 0.1;         // [s] in which a weight is learned
-constexpr double kCorrectTime = 0.15;      // [s] in which an error of the part is corrected
+constexpr double kCarrySpeed = 0.45;     // [m/s]
+constexpr double kFastest = 1.3;         // [m/s]: the peak of the fastest reach
+constexpr double kApproachSpeed = 0.15;  // [m/s]
+constexpr double kInsertSpeed = 0.04;    // [m/s]
+constexpr double kStandOff = 4e-3;       // [m] before anything engages, from where it goes slowly
+constexpr double kGraspTime = 0.2;       // [s]
+constexpr double kSettleTime = 0.25;     // [s]
+constexpr double kReleaseTime = 0.1;     // [s]
+constexpr double kPutDownGap = 2e-3;     // [m] above the table
+constexpr double kAtReference = 0.2e-3;  // [m]: the hand is there
+constexpr double kCalm = 5e-3;           // [m/s]
+constexpr double kMostWait = 1.5;        // [s] for a hand to come to its reference
+constexpr double kLearnTime = 0.1;       // [s] in which a weight is learned
+constexpr double kCorrectTime = 0.15;    // [s] in which an error of the part is corrected
 // [s], likewise of how it is turned: large parts swing slowly in the coupling.
 constexpr double kTurnCorrectTime = 1.5;
-constexpr double kBeside = 0.3e-3;        // [m] beside its way, where a part goes no further
-constexpr double kTurnedBeside = 0.02;    // [rad], likewise
-constexpr double kTurnRate = 0.5;         // [rad/s]: it turns no faster on its way
-constexpr double kThreadRate = 6;         // [rad/s], along a thread: about a turn a second
-constexpr double kMostTwistLead = 0.3;    // [rad], likewise where it tightens a thread
-constexpr double kMostTurnLead = 0.1;     // [rad] that the hand turns ahead of the part
-constexpr double kPatience = 60;          // [s] for a way, besides four times what it takes
+constexpr double kBeside = 0.3e-3;         // [m] beside its way, where a part goes no further
+constexpr double kTurnedBeside = 0.02;     // [rad], likewise
+constexpr double kTurnRate = 0.5;          // [rad/s]: it turns no faster on its way
+constexpr double kThreadRate = 6;          // [rad/s], along a thread: about a turn a second
+constexpr double kMostTwistLead = 0.3;     // [rad], likewise where it tightens a thread
+constexpr double kMostTurnLead = 0.1;      // [rad] that the hand turns ahead of the part
+constexpr double kPatience = 60;           // [s] for a way, besides four times what it takes
 constexpr double kMostOffset = 0.02;       // [m]
 constexpr double kMostTurn = 0.2;          // [rad]
 constexpr double kSlackTime = 0.08;        // [s]

@@ -24,7 +24,7 @@ using testing::ExpectAllSeated;
 using testing::ProductFile;
 using testing::RunHvasJson;
 
-constexpr std::uint32_t kShaft = 2;  // its occurrence in bushing.step
+constexpr std::uint32_t kShaft = 2;   // its occurrence in bushing.step
 constexpr double kDeviceForce = 7.9;  // [N]: that of a simulated person's device.
 constexpr auto kMating = static_cast<std::uint8_t>(haptics::HoldState::kMating);
 
@@ -32,9 +32,8 @@ constexpr auto kMating = static_cast<std::uint8_t>(haptics::HoldState::kMating);
 json AssembleBushing(const std::string& fit, int seed, const std::string& record = {},
                      const std::string& force_map = "published") {
   std::vector<std::string> arguments{
-      "assemble", ProductFile("bushing"), "--fit",       "shaft=" + fit,
-      "--seed",   std::to_string(seed),   "--force-map", force_map,
-      "--operator", "person"};
+      "assemble",           ProductFile("bushing"), "--fit",   "shaft=" + fit, "--seed",
+      std::to_string(seed), "--force-map",          force_map, "--operator",   "person"};
   if (!record.empty()) {
     arguments.insert(arguments.end(), {"--record", record});
   }

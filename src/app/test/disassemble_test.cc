@@ -95,8 +95,8 @@ TEST(DisassembleTest, X16OilSealComesOutAfterTheSmallestSetAndTheRecordRunsAgain
 }
 
 TEST(DisassembleTest, X16PressFitBreaksLooseNearTheForceOfItsClosedForm) {
-  const json run = RunHvasJson(
-      {"disassemble", ProductFile("bushing"), "--fit", "shaft=H7/p6", "--part", "shaft", "--operator", "person"});
+  const json run = RunHvasJson({"disassemble", ProductFile("bushing"), "--fit", "shaft=H7/p6",
+                                "--part", "shaft", "--operator", "person"});
   ASSERT_EQ(run["parts"].size(), 1u);
   const json& shaft = run["parts"][0];
   EXPECT_TRUE(shaft["out"].get<bool>());

@@ -141,7 +141,8 @@ TEST(AssembleErrorTest, RunThatIsStoppedSaysWhichPartsAreMissing) {
   }
   const Ran ran = RunHvas({"assemble", ProductFile("bushing"), "--limit", "5"});
   EXPECT_EQ(ran.status, 2);
-  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "NOT IN PLACE: the run reached its limit of 5 s", ran.out);
+  EXPECT_PRED_FORMAT2(::testing::IsSubstring, "NOT IN PLACE: the run reached its limit of 5 s",
+                      ran.out);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "1 of 3 parts in place", ran.out);
 }
 

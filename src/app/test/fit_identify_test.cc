@@ -46,8 +46,8 @@ TEST(FitIdentifyTest, RefusesWhatIsNoExperiment) {
 // W9, W10, N4: true newtons are the same whatever the map; the paper's are k_r times them.
 TEST(ForceMapTest, MapsChangeWhatIsFeltAndNotWhatIsTrue) {
   const auto press = [](const std::string& map) {
-    const json run = RunHvasJson(
-        {"assemble", ProductFile("bushing"), "--fit", "shaft=H7/p6", "--force-map", map, "--operator", "person"});
+    const json run = RunHvasJson({"assemble", ProductFile("bushing"), "--fit", "shaft=H7/p6",
+                                  "--force-map", map, "--operator", "person"});
     EXPECT_EQ(run["force_map"], map);
     EXPECT_EQ(run["seated"], 3);
     return run["parts"][2];
