@@ -110,13 +110,19 @@ const Mate* FindTeeth(const Product& product, OccurrenceId a, OccurrenceId b) {
   return deepest;
 }
 
+/** The faces that are furthest beyond their bound. A shaft in a hole goes before all others: its
+ depth is exact, and what lies about it comes of it. */
 std::optional<DrawingError> FindError(const Product& product, const SharedVolume& shared) {
   std::optional<DrawingError> worst;
-  double most = kTouchingDepth;
+  std::pair<bool, double> most(false, kTouchingDepth);
   for (const FaceOverlap& faces : shared.faces) {
-    const double largest = faces.depth > most ? CalcLargestDepth(product, shared, faces) : 0;
-    if (faces.depth - largest > most) {
-      most = faces.depth - largest;
+    if (faces.depth <= kTouchingDepth) {
+      continue;
+    }
+    const double largest = CalcLargestDepth(product, shared, faces);
+    const std::pair beyond(faces.is_coaxial, faces.depth - largest);
+    if (beyond.second > kTouchingDepth && beyond > most) {
+      most = beyond;
       worst = DrawingError{shared.a,    shared.b, faces.a,       faces.b,
                            faces.depth, largest,  shared.volume, faces.is_coaxial};
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -24,7 +25,6 @@ constexpr int kRays = 32;             // Along each side of the boxes' overlap: 
 constexpr int kMostRays = 64;         // Along a long side: a choice.
 constexpr double kRayStep = 2e-3;     // [m]: along long sides rays lie no further apart. A choice.
 constexpr double kShift = 0.4142136;  // Of a step: rays keep off the edges of what is drawn round.
-constexpr std::size_t kMostSurface = 4096;  // Points that a depth is measured from: a choice.
 constexpr std::size_t kMostPoints = 512;    // Whose depth is looked for: a choice.
 constexpr std::size_t kMostInside = 64;     // Points of a part that is inside the other: a choice.
 constexpr double kInterference = 1e-6;      // [m]: less is drawn equal.
@@ -273,30 +273,59 @@ Found IntersectClosely(const spatial::Box& box, const std::vector<Facet>& a,
 
 using Depths = std::map<std::pair<FaceId, FaceId>, double>;
 
+/** Finds the nearest of some points: they are sorted along an axis, and looked at from there on. */
+class NearestPoint {
+ public:
+  explicit NearestPoint(std::vector<Border> points) : points_(std::move(points)) {
+    std::sort(points_.begin(), points_.end(),
+              [](const Border& x, const Border& y) { return x.p_F.x() < y.p_F.x(); });
+  }
+
+  /** @pre There is one. */
+  [[nodiscard]] const Border& Of(const Vec3& p_F) const {
+    const auto at = std::lower_bound(points_.begin(), points_.end(), p_F.x(),
+                                     [](const Border& x, double along) { return x.p_F.x() < along; });
+    const Border* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    const auto look = [&](const Border& point) {
+      const double along = point.p_F.x() - p_F.x();
+      if (along * along >= least) {
+        return false;
+      }
+      if (const double distance = (point.p_F - p_F).squaredNorm(); distance < least) {
+        least = distance;
+        nearest = &point;
+      }
+      return true;
+    };
+    for (auto up = at; up != points_.end() && look(*up); ++up) {
+    }
+    for (auto down = at; down != points_.begin() && look(*std::prev(down)); --down) {
+    }
+    return *nearest;
+  }
+
+ private:
+  std::vector<Border> points_;
+};
+
 /** Adds how deep the points of a surface lie inside the other one, by their faces: the distance to
  the plane of the nearest point. @param is_a  The points are those of the first part. */
 void AddDepths(const std::vector<Border>& points, const std::vector<Border>& surface, bool is_a,
                Depths* depths) {
+  if (surface.empty()) {
+    return;
+  }
+  const NearestPoint nearest(surface);
   // Each ray has its points in pairs, one on either side of the part: an even step would leave out
   // a side.
   const std::size_t step = (1 + points.size() / kMostPoints) | 1U;
-  const std::size_t stride = (1 + surface.size() / kMostSurface) | 1U;
-  for (std::size_t i = 0; !surface.empty() && i < points.size(); i += step) {
+  for (std::size_t i = 0; i < points.size(); i += step) {
     const Border& point = points[i];
-    double nearest = std::numeric_limits<double>::infinity();
-    double depth = 0;
-    FaceId face;
-    for (std::size_t k = 0; k < surface.size(); k += stride) {
-      const Border& other = surface[k];
-      const Vec3 d = other.p_F - point.p_F;
-      if (d.squaredNorm() < nearest) {
-        nearest = d.squaredNorm();
-        depth = std::abs(d.dot(other.normal_F));
-        face = other.face;
-      }
-    }
-    double& deepest = (*depths)[is_a ? std::pair(point.face, face) : std::pair(face, point.face)];
-    deepest = std::max(deepest, depth);
+    const Border& other = nearest.Of(point.p_F);
+    double& deepest =
+        (*depths)[is_a ? std::pair(point.face, other.face) : std::pair(other.face, point.face)];
+    deepest = std::max(deepest, std::abs((other.p_F - point.p_F).dot(other.normal_F)));
   }
 }
 

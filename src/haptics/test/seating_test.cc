@@ -233,8 +233,9 @@ TEST(Seating, PartThatGivesIsSeatedOnlyOnceTheHandHasFeltItsForce) {
     const double peak = CalcGivingPeak(*curve).in;
     ASSERT_GT(peak, 20);
     rig.Take();
-    rig.hand->MoveSoftly(Vec3(0, 0, -20e-3), 1);
+    rig.hand->MoveSoftly(Vec3(0, 0, -17.5e-3), 1);  // To where the bead begins, and is matched.
     rig.hand->Wait(0.5);
+    EXPECT_GE(rig.FindEvents().first, 0);
     EXPECT_LT(rig.FindEvents().second, 0) << "a hand that does not push does not bring it in";
     rig.hand->MoveSoftly(Vec3(0, 0, -beyond), 1);
     rig.hand->Wait(0.5);
