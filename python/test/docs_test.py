@@ -25,7 +25,7 @@ class Page(unittest.TestCase):
                         exec(compile(block, "docs/python.md", "exec"), scope)
             finally:
                 os.chdir(before)
-        for part in ["38 parts", "not-found", "interference", "True 99e6142371dba9f4efd4ec764a949aab", "True", "seated", "10 of 10"]:
+        for part in ["38 parts", "not-found", "interference", "True 4ec230565db9cebff76a10a83fabcefc", "True", "seated", "10 of 10"]:
             self.assertIn(part, printed.getvalue())
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import hvas
 from support import PRODUCTS
 
-BUSHING_DIGEST = "99e6142371dba9f4efd4ec764a949aab"  # That of `hvas assemble products/bushing.step`.
+BUSHING_DIGEST = "4ec230565db9cebff76a10a83fabcefc"  # That of `hvas assemble products/bushing.step`.
 
 
 class Assembly(unittest.TestCase):

@@ -35,8 +35,14 @@ std::string ExplainMissing(const Model& model, product::OccurrenceId id, const s
   return reason.empty() ? end : reason;
 }
 
-/** Adds the parts that a stopped run did not come to. */
+/** Adds the parts that a stopped run did not come to, and says of those in whose turn it ended that
+ it did. */
 void AddMissing(const Model& model, const std::string& end, std::vector<PartResult>* parts) {
+  for (PartResult& part : *parts) {
+    if (!part.is_seated && part.reason.empty()) {
+      part.reason = ExplainMissing(model, part.occurrence, end);
+    }
+  }
   for (const simulation::Body& body : model.bodies) {
     const bool is_listed = std::any_of(parts->begin(), parts->end(), [&](const PartResult& part) {
       return part.occurrence == body.occurrence;

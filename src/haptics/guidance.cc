@@ -52,7 +52,7 @@ EnergyCredit Guidance::AddTo(const DisplayedPart& displayed, double weight, doub
   // A tool has no place of its own to be attracted to, and a way that turns or bends, as a
   // thread's, does not lead straight to it.
   const bool attracts =
-      displayed.part->drives.empty() && !displayed.part->has_bent_way && !has_thread;
+      displayed.part->drives.empty() && !displayed.part->has_bent_way() && !has_thread;
   const EnergyCredit credit =
       attracts ? AddAttraction(displayed, *axis, soft_start, solver) : EnergyCredit();
   if (guide_.is_aligned() && options_.renders_fits) {

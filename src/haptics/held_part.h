@@ -112,7 +112,9 @@ struct HeldPart {
   spatial::Pose X_WB_start;          ///< Where it is taken up, unless it moves.
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
-  bool has_bent_way{false};     ///< Its way bends or turns: nothing draws it straight to its place.
+  /** How far from its place its way is straight [m]: where a way bends or turns, no mate captures
+   it further out, and nothing draws it straight to its place. */
+  double straight_end{std::numeric_limits<double>::infinity()};
   bool starts_in_place{false};  ///< It is taken out: X_WB_start is its place.
   std::vector<HeldMate> mates;
   /** Diameter or width of the smallest feature that guides it; infinite where none does [m]. */
@@ -138,6 +140,8 @@ struct HeldPart {
   spatial::Pose X_WT_target;  ///< Pose of the target's first part.
   double target_range{0};     ///< Distance from which on the target stands still [m].
   std::shared_ptr<const RigidGroup> joined;  ///< The target with this part in its place.
+
+  [[nodiscard]] bool has_bent_way() const noexcept { return std::isfinite(straight_end); }
 };
 
 }  // namespace hvas::haptics

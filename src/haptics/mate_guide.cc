@@ -186,6 +186,8 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
   insertion_depth_ = 0;
   axis_ = nullptr;
   const spatial::Pose X_WWish = WithoutOvershoot(part, X_WT);
+  const double to_go = (X_WB * part.p_BoBcm_B - part.X_WB_goal * part.p_BoBcm_B).norm();
+  const bool is_on_straight_end = to_go <= std::max(part.straight_end, options.match_distance);
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
     const HeldMate& mate = part.mates[i];
@@ -200,7 +202,7 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
     // An engaged shaft can only be drawn out along its axis; before that the hand's wish counts.
     if (!state.is_captured || g.engaged <= 0) {
       state.is_captured =
-          mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
+          is_on_straight_end && mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
           mates::CalcCaptureRatio(kind, deviation(X_WWish), options.capture) < kHandRatio;
     }
     is_near_ = is_near_ || mates::CalcCaptureRatio(kind, now, options.capture) < kNearRatio;

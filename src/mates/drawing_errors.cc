@@ -1,7 +1,6 @@
 #include "mates/drawing_errors.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "base/units.h"
 #include "fits/iso286.h"
 #include "mates/elastic_parts.h"
+#include "product/wall.h"
 
 namespace hvas::mates {
 namespace {
@@ -51,18 +51,6 @@ double CalcToothDepth(const Mate& mate) {
   return kDepth * mate.shaft_radius;
 }
 
-/** The width of a part along a direction [m]. */
-double CalcWidth(const product::Part& part, const Vec3& along_B) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const Vec3& vertex : part.mesh.vertices) {
-    const double at = along_B.dot(vertex);
-    low = std::min(low, at);
-    high = std::max(high, at);
-  }
-  return std::max(0.0, high - low);
-}
-
 double SizeOf(const product::Part& part) {
   return part.box_B.is_empty() ? 0.0 : part.box_B.size().prod();
 }
@@ -93,7 +81,8 @@ double CalcContactSize(const Product& product, const SharedVolume& shared,
   const OccurrenceId smaller = is_a ? shared.a : shared.b;
   const product::Part& part = product.part_of(smaller);
   if (const auto normal_W = FindNormal(product, shared, faces)) {
-    return CalcWidth(part, product.occurrences[smaller.index()].X_WB.q().inverse() * *normal_W);
+    return product::CalcExtentAlong(
+        part, product.occurrences[smaller.index()].X_WB.q().inverse() * *normal_W);
   }
   return part.box_B.size().minCoeff();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "product/mesh_ray.h"
@@ -74,6 +75,17 @@ std::optional<double> CalcThinnestWall(const Part& part) {
     }
   }
   return thinnest;
+}
+
+double CalcExtentAlong(const Part& part, const Vec3& along_B) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Vec3& vertex : part.mesh.vertices) {
+    const double at = along_B.dot(vertex);
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  return std::max(0.0, high - low);
 }
 
 }  // namespace hvas::product

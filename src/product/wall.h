@@ -14,4 +14,7 @@ namespace hvas::product {
  skeletonisation using the shape diameter function, The Visual Computer 24, 2008, with one ray. */
 [[nodiscard]] std::optional<double> CalcThinnestWall(const Part& part);
 
+/** The extent of a part along a direction [m]. @param along_B  Unit. */
+[[nodiscard]] double CalcExtentAlong(const Part& part, const Vec3& along_B);
+
 }  // namespace hvas::product

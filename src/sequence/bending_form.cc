@@ -1,12 +1,15 @@
 #include "sequence/bending_form.h"
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "fits/elastic_parts.h"
 #include "product/bearable_strain.h"
 #include "product/flexible.h"
 #include "product/mesh_ray.h"
+#include "product/wall.h"
 #include "spatial/pose.h"
 
 namespace hvas::sequence {
@@ -15,16 +18,21 @@ namespace {
 using product::OccurrenceId;
 
 constexpr double kMostThickness = 1.0 / 3;  // Of the length; beams are slender: a choice.
+constexpr double kBesideFaces = 0.1;        // Of the deflection: a choice.
 
-double CalcExtentAlong(const product::Part& part, const Vec3& way_B) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const Vec3& vertex : part.mesh.vertices) {
-    const double along = way_B.dot(vertex);
-    low = std::min(low, along);
-    high = std::max(high, along);
+/** How far the material of a part goes on from a point of it along a direction, and where it begins
+ there, as distances [m]; none where it does not end within `reach`. */
+std::optional<std::pair<double, double>> FindMaterial(const product::Part& part, const Vec3& p_B,
+                                                      const Vec3& dir_B, double reach) {
+  const std::vector<product::Crossing> crossings = product::ListCrossings(part, p_B, dir_B, reach);
+  const auto leaves =
+      std::find_if(crossings.begin(), crossings.end(),
+                   [](const product::Crossing& crossing) { return !crossing.is_entering; });
+  if (leaves == crossings.end()) {
+    return std::nullopt;
   }
-  return std::max(0.0, high - low);
+  const double begins = leaves == crossings.begin() ? 0.0 : std::prev(leaves)->distance;
+  return std::pair(begins, leaves->distance);
 }
 
 }  // namespace
@@ -34,22 +42,37 @@ std::optional<Bending> FindBending(const product::Product& product, product::Occ
                                    double deflection) {
   const product::Part& part = product.part_of(id);
   const spatial::Pose X_BW = product.occurrences[id.index()].X_WB.Inverse();
-  const double length = CalcExtentAlong(part, X_BW.q() * way_W);
+  const Vec3 way_B = X_BW.q() * way_W;
+  const double length = product::CalcExtentAlong(part, way_B);
   const Vec3 inward_B = X_BW.q() * inward_W;
   const Vec3 p_B = X_BW * p_W;
-  const auto inner = product::FindFirstHit(part, p_B, inward_B, kMostThickness * length);
-  if (!inner) {
-    return std::nullopt;
+  const double most = kMostThickness * length;
+  // A ray in the plane of a face is in the material or beside it as rounding has it.
+  const double aside = kBesideFaces * deflection;
+  const Vec3 across_B = way_B.cross(inward_B);
+  double thickness = 0;
+  double back = 0;
+  for (int k = 0; k < 9; ++k) {
+    const Vec3 from_B = p_B + aside * ((k / 3 - 1) * way_B + (k % 3 - 1) * across_B);
+    const auto inner = FindMaterial(part, from_B, inward_B, most);
+    if (!inner || inner->first > deflection) {
+      continue;
+    }
+    // Where the point is in the material, what lies behind it counts, too.
+    const auto outer = FindMaterial(part, from_B, -inward_B, part.box_B.size().norm());
+    const bool is_inside = inner->first == 0 && outer && outer->first == 0;
+    const double there = inner->second - inner->first + (is_inside ? outer->second : 0.0);
+    if (there > thickness) {
+      thickness = there;
+      back = inner->second;
+    }
   }
-  // Where the point is in the material, what lies behind it counts, too.
-  const auto outer = product::FindFirstHit(part, p_B, -inward_B, deflection);
-  const double thickness = inner->distance + (outer ? outer->distance : 0.0);
-  if (thickness > kMostThickness * length) {
+  if (!(thickness > 0) || thickness > most) {
     return std::nullopt;
   }
   const fits::SnapArm arm{length, 0, thickness, 0};
   return Bending{deflection / fits::CalcArmDeflection(arm, 1), length, thickness,
-                 p_W + inner->distance * inward_W};
+                 p_W + back * inward_W};
 }
 
 namespace {

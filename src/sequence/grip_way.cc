@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/check.h"
@@ -60,20 +61,60 @@ spatial::Twist GripWay::RateAt(double travel) const noexcept {
           (X_WG_[i + 1].p() - X_WG_[i].p()) / span};
 }
 
+double GripWay::CalcSharpestBend(double travel, double along) const noexcept {
+  const double low = std::min(travel, travel + along);
+  const double high = std::max(travel, travel + along);
+  double sharpest = 0;
+  for (std::size_t i = FindPiece(low) + 1; i < travels_.size() && travels_[i] <= high; ++i) {
+    const spatial::Twist before = RateAt(0.5 * (travels_[i - 1] + travels_[i]));
+    const spatial::Twist after =
+        i + 1 < travels_.size() ? RateAt(0.5 * (travels_[i] + travels_[i + 1])) : RateAt(length());
+    sharpest = std::max(
+        sharpest, std::hypot((after.v - before.v).norm(), radius_ * (after.w - before.w).norm()));
+  }
+  return sharpest;
+}
+
 double GripWay::CalcSpeed(const spatial::Twist& V_W, double travel) const noexcept {
   const spatial::Twist rate = RateAt(travel);
   return rate.v.dot(V_W.v) + radius_ * radius_ * rate.w.dot(V_W.w);
 }
 
-double GripWay::CalcTravel(const spatial::Pose& X_WG, double near) const noexcept {
-  constexpr int kLooks = 4;  // Pieces turn little from one to the next: a choice.
-  double travel = near;
-  for (int look = 0; look < kLooks; ++look) {
-    const spatial::Pose X_WN = At(travel);
-    travel +=
-        CalcSpeed({spatial::RotationBetween(X_WN.q(), X_WG.q()), X_WG.p() - X_WN.p()}, travel);
+GripWay::Nearest GripWay::FindNearest(const spatial::Pose& X_WG, std::size_t piece,
+                                      double from) const noexcept {
+  constexpr int kLooks = 4;  // A piece that turns is not straight: a choice.
+  const double least = piece == 0 ? -std::numeric_limits<double>::infinity() : travels_[piece];
+  const double most =
+      piece + 2 >= travels_.size() ? std::numeric_limits<double>::infinity() : travels_[piece + 1];
+  Nearest nearest{.travel = std::clamp(from, least, most)};
+  for (int look = 0;; ++look) {
+    const spatial::Pose X_WN = At(nearest.travel);
+    const spatial::Twist error{spatial::RotationBetween(X_WN.q(), X_WG.q()), X_WG.p() - X_WN.p()};
+    nearest.distance = std::hypot(error.v.norm(), radius_ * error.w.norm());
+    if (look == kLooks) {
+      return nearest;
+    }
+    // At the end of a piece the rate is that of the next one, which this piece does not reach.
+    const double inside = std::min(nearest.travel, std::nextafter(most, least));
+    nearest.travel = std::clamp(nearest.travel + CalcSpeed(error, inside), least, most);
   }
-  return travel;
+}
+
+double GripWay::CalcTravel(const spatial::Pose& X_WG, double near) const noexcept {
+  std::size_t piece = FindPiece(near);
+  Nearest nearest = FindNearest(X_WG, piece, near);
+  for (const int sense : {-1, 1}) {
+    while (sense < 0 ? piece > 0 : piece + 2 < travels_.size()) {
+      const std::size_t next = sense < 0 ? piece - 1 : piece + 1;
+      const Nearest there = FindNearest(X_WG, next, nearest.travel);
+      if (there.distance >= nearest.distance) {
+        break;
+      }
+      nearest = there;
+      piece = next;
+    }
+  }
+  return nearest.travel;
 }
 
 }  // namespace hvas::sequence

@@ -28,13 +28,28 @@ class GripWay {
    */
   [[nodiscard]] spatial::Twist RateAt(double travel) const noexcept;
 
-  /** The travel of the pose on the way that is nearest to this one, looked for from `near` on. */
+  /** The travel of the pose on the way that is nearest to this one, looked for from `near` on, from
+   piece to piece for as long as it comes nearer. */
   [[nodiscard]] double CalcTravel(const spatial::Pose& X_WG, double near) const noexcept;
+
+  /** The largest change of direction within a stretch of the way: the length of the difference of
+   two rates, 0 where it goes straight on and 2 where it turns back.
+   @param along  Of either sign [m]. */
+  [[nodiscard]] double CalcSharpestBend(double travel, double along) const noexcept;
 
   /** Rate of travel at this motion [m/s]. @param travel  Where on the way. */
   [[nodiscard]] double CalcSpeed(const spatial::Twist& V_W, double travel) const noexcept;
 
  private:
+  struct Nearest {
+    double travel{0};
+    double distance{0};  ///< Root of the squares of distance and of turn times the radius [m].
+  };
+
+  /** The nearest pose of one piece, of which the first and the last have no end outside. */
+  [[nodiscard]] Nearest FindNearest(const spatial::Pose& X_WG, std::size_t piece,
+                                    double from) const noexcept;
+
   /** The piece on which a travel lies. */
   [[nodiscard]] std::size_t FindPiece(double travel) const noexcept;
 

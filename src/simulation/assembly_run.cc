@@ -200,6 +200,7 @@ bool AssemblyRun::TryAgain(const sequence::SequenceStep& step, Worker* worker) {
     return false;
   }
   turn.reason = turn.tries == 1 ? ExplainFailure(step, *worker) : turn.reason;
+  ResultOf(step.occurrence).reason = turn.reason;  // In case that the run ends within its turn.
   AddHold(step.occurrence);
   return Begin(step, worker);
 }

@@ -28,13 +28,17 @@ constexpr double kCorrectTime = 0.15;    // [s] in which an error of the part is
 // [s], likewise of how it is turned: large parts swing slowly in the coupling.
 constexpr double kTurnCorrectTime = 1.5;
 constexpr double kBeside = 0.3e-3;         // [m] beside its way, where a part goes no further
+constexpr double kLag = 0.15e-3;           // [m] behind its way, where it presses harder
 constexpr double kTurnedBeside = 0.02;     // [rad], likewise
 constexpr double kTurnRate = 0.5;          // [rad/s]: it turns no faster on its way
 constexpr double kThreadRate = 6;          // [rad/s], along a thread: about a turn a second
 constexpr double kMostTwistLead = 0.3;     // [rad], likewise where it tightens a thread
+constexpr double kAhead = 0.1e-3;          // [m] along its way, where its direction is taken
+constexpr double kOvershoot = 0.15e-3;     // [m] that the arm's mass goes on by where it bends
+constexpr double kBraking = 3e-3;          // [m] before a bend, where it slows down
 constexpr double kMostTurnLead = 0.1;      // [rad] that the hand turns ahead of the part
 constexpr double kPatience = 60;           // [s] for a way, besides four times what it takes
-constexpr double kMostOffset = 0.02;       // [m]
+constexpr double kMostOffset = 0.1;        // [m]: what the arm turns into kMostHandForce
 constexpr double kMostTurn = 0.2;          // [rad]
 constexpr double kSlackTime = 0.08;        // [s]
 constexpr double kSpeedTime = 0.02;        // [s] over which the speed is measured
@@ -193,13 +197,50 @@ void GuidedHand::GiveUp() noexcept {
   Begin(Phase::kRelease);
 }
 
+bool GuidedHand::IsOnWay(const spatial::Twist& error) noexcept {
+  return error.v.norm() < kBeside && error.w.norm() < kTurnedBeside;
+}
+
+void GuidedHand::FollowByPose(const spatial::Twist& error, double speed) noexcept {
+  if (IsOnWay(error)) {
+    seen_ += Sense() * speed * dt_;
+  }
+  const Vec3 ahead = Sense() * task_.way->RateAt(seen_ + Sense() * kAhead).v;
+  const bool lags = error.v.dot(ahead) > kLag * ahead.norm();
+  push_ = std::clamp(push_ + (lags ? 1 : -2) * kPushRate * dt_, 0.0, kMostHandForce);
+  travel_ = seen_ + Sense() * push_ * kLeadPerForce;
+}
+
+void GuidedHand::FollowByForce(const spatial::Twist& error, double speed) noexcept {
+  if (IsOnWay(error)) {
+    Press(Sense() * speed_, speed);
+    Advance(speed);
+  } else {
+    push_ = kFirstPush;
+    travel_ = seen_;  // It comes back onto its way first.
+  }
+}
+
+double GuidedHand::LimitOnWay(double speed) const noexcept {
+  if (task_.way == nullptr) {
+    return speed;
+  }
+  const double turns = task_.way->RateAt(seen_).w.norm();
+  const double rate = task_.is_threaded ? kThreadRate : kTurnRate;
+  // A mass on a spring that comes at v goes on by v sqrt(m / k) where its reference turns off.
+  const double bend = task_.way->CalcSharpestBend(seen_, Sense() * kBraking);
+  const double around = kOvershoot * std::sqrt(arm_.stiffness / arm_.mass);
+  return std::min(
+      {speed, rate / std::max(turns, rate / speed), around / std::max(bend, around / speed)});
+}
+
 spatial::Pose GuidedHand::CalcLead() const noexcept {
   if (task_.way == nullptr) {
     return task_.WayAt(travel_);
   }
   // Along the tangent: around a bend, what the hand is ahead by would be beside the way.
   const spatial::Pose X_WN = task_.WayAt(seen_);
-  const spatial::Twist rate = task_.way->RateAt(seen_);
+  const spatial::Twist rate = task_.way->RateAt(seen_ + Sense() * kAhead);
   Vec3 turn = (travel_ - seen_) * rate.w;
   const double most = task_.is_threaded ? kMostTwistLead : kMostTurnLead;
   turn *= most / std::max(most, turn.norm());
@@ -212,15 +253,15 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
     return;
   }
   const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
+  const double speed =
+      LimitOnWay(seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed);
+  const bool is_by_pose = task_.way != nullptr && !task_.is_threaded;
   const double before = seen_;
-  seen_ = task_.TravelOf(X_WG, seen_);
+  seen_ = is_by_pose ? seen_ : task_.TravelOf(X_WG, seen_);
   speed_ += ((seen_ - before) / dt_ - speed_) * std::min(1.0, dt_ / kSpeedTime);
   const spatial::Pose X_WN = task_.WayAt(seen_);
-  const Vec3 d = task_.OutwardAt(seen_);
-  Vec3 beside = X_WN.p() - X_WG.p();
-  beside -= beside.dot(d) * d;
-  const Vec3 turned = spatial::RotationBetween(X_WG.q(), X_WN.q());
-  Correct({turned, beside});
+  const spatial::Twist error{spatial::RotationBetween(X_WG.q(), X_WN.q()), X_WN.p() - X_WG.p()};
+  Correct(error);
   if (is_backing_ && Sense() * (seen_ - back_to_) > 0) {
     is_backing_ = false;
     nearest_ = seen_;
@@ -231,16 +272,10 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
     BeginPutDown();
     return;
   }
-  const double speed = seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed;
-  const double turns = task_.way != nullptr ? task_.way->RateAt(seen_).w.norm() : 0;
-  const double rate = task_.is_threaded ? kThreadRate : kTurnRate;
-  const double wanted = std::min(speed, rate / std::max(turns, rate / speed));
-  if (beside.norm() < kBeside && turned.norm() < kTurnedBeside) {
-    Press(Sense() * speed_, wanted);
-    Advance(wanted);
+  if (is_by_pose) {
+    FollowByPose(error, speed);
   } else {
-    push_ = kFirstPush;
-    travel_ = seen_;  // It comes back onto its way first.
+    FollowByForce(error, speed);
   }
   Refer(CalcLead());
   if (phase_time_s_ > kPatience + 4 * outside / kInsertSpeed) {

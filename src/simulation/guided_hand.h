@@ -71,6 +71,15 @@ class GuidedHand final : public TaskOperator {
   void TryAgain() noexcept;
   /** Lets the part go where it is held up. */
   void GiveUp() noexcept;
+  [[nodiscard]] static bool IsOnWay(const spatial::Twist& error) noexcept;
+  /** Along a way that bends: goes on along it while the part keeps up with it, as pieces of it may
+   lie close together.
+   @param error  From the part to where the hand means it to be. */
+  void FollowByPose(const spatial::Twist& error, double speed) noexcept;
+  /** Along a straight way or a thread: from where the part is seen to be, as hard as it takes. */
+  void FollowByForce(const spatial::Twist& error, double speed) noexcept;
+  /** The speed at which the way may be followed where it turns and bends [m/s]; `speed` at most. */
+  [[nodiscard]] double LimitOnWay(double speed) const noexcept;
   /** Where the reference is: ahead of the part along its way. */
   [[nodiscard]] spatial::Pose CalcLead() const noexcept;
   /** Sets the reference to a pose of the part, with what was corrected. */

@@ -26,6 +26,29 @@ using product::OccurrenceId;
 
 constexpr double kApproach = 0.01;  // [m] before its place, where a part's mates are resolved from
 
+/** How far a point of a part goes straight along a way from its place, without a turn [m]; infinite
+ where the way has no poses. */
+double CalcStraightEnd(const std::vector<spatial::Pose>& way, const Vec3& p_B) {
+  constexpr double kOffStraight = 50e-6;  // [m]: paths are free to this. A choice.
+  constexpr double kTurnedOff = 1e-3;     // [rad]: a choice.
+  if (way.size() < 2) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Vec3 place = way.front() * p_B;
+  const Vec3 outward = (way[1] * p_B - place).normalized();
+  double end = 0;
+  for (const spatial::Pose& X_WB : way) {
+    const Vec3 gone = X_WB * p_B - place;
+    const double along = gone.dot(outward);
+    if ((gone - along * outward).norm() > kOffStraight ||
+        spatial::RotationBetween(way.front().q(), X_WB.q()).norm() > kTurnedOff) {
+      return end;
+    }
+    end = along;
+  }
+  return end;
+}
+
 /** The mate by which the hand is guided onto a fastener's axis. It answers for no faces: contact
  stays, and turns the fastener. */
 haptics::HeldMate MakeDriveMate(const ToolMate& mate, OccurrenceId fastener,
@@ -154,7 +177,7 @@ std::shared_ptr<const haptics::HeldPart> HeldPartMaker::Make(const sequence::Seq
                                                !sequence::IsWithinProduct(step.kind);
   held->X_WB_start = lies_on_table ? CalcPoseAboveTable(step) : state.X_WB;
   held->insertion_W = -step.extraction_W;
-  held->has_bent_way = !step.way.empty();
+  held->straight_end = CalcStraightEnd(step.way, held->p_BoBcm_B);
   held->left_out = ListTogetherBodies(step);
   held->allowances = sequence::ListAllowances(model_.sequence.overlaps, model_.sequence.gives, id);
   AddGives(id, held.get());
@@ -208,7 +231,7 @@ void HeldPartMaker::AddTablePlaces(const sequence::SequenceStep& step, haptics::
     there->smallest_guide = std::numeric_limits<double>::infinity();
     there->lacks_partners = false;
     there->insertion_W = place.insertion_W;
-    there->has_bent_way = false;
+    there->straight_end = std::numeric_limits<double>::infinity();
     there->X_WB_goal = place.X_WB_goal;
     there->starts_in_place = place.starts_in_place;
     there->target = GroupOf(place.target);

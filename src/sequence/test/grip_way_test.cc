@@ -59,6 +59,24 @@ TEST(GripWayTest, AcrossTheWayIsNoTravel) {
   EXPECT_NEAR(way.CalcTravel({X.q(), X.p() + 0.5e-3 * across}, travel), travel, 2e-5);
 }
 
+TEST(GripWayTest, AtACornerTheNearestPieceIsFound) {
+  const GripWay way({Pose(), Pose(Vec3(0, 0, 30e-3)), Pose(Vec3(40e-3, 0, 30e-3))}, kGyration);
+  // Beyond the corner, along the outer piece and along the inner one.
+  for (const double near : {25e-3, 30e-3, 33e-3}) {
+    EXPECT_NEAR(way.CalcTravel(Pose(Vec3(-2e-3, 0, 30e-3)), near), 30e-3, 1e-12) << near;
+    EXPECT_NEAR(way.CalcTravel(Pose(Vec3(-2e-3, 0, 28e-3)), near), 28e-3, 1e-12) << near;
+    EXPECT_NEAR(way.CalcTravel(Pose(Vec3(5e-3, 0, 31e-3)), near), 35e-3, 1e-12) << near;
+  }
+}
+
+TEST(GripWayTest, TheSharpestBendIsThatOfTheCornerWithinReach) {
+  const GripWay way({Pose(), Pose(Vec3(0, 0, 30e-3)), Pose(Vec3(40e-3, 0, 30e-3))}, kGyration);
+  EXPECT_NEAR(way.CalcSharpestBend(33e-3, -5e-3), std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(way.CalcSharpestBend(28e-3, 5e-3), std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(way.CalcSharpestBend(36e-3, -5e-3), 0, 1e-12);
+  EXPECT_NEAR(way.CalcSharpestBend(80e-3, 5e-3), 0, 1e-12);
+}
+
 TEST(GripWayTest, SpeedIsThatOfTheTravel) {
   const GripWay way = MakeWay();
   const double travel = 0.4 * way.length();
