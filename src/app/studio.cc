@@ -108,7 +108,10 @@ studio::WorkbenchOptions MakeWorkbench(const StudioOptions& options) {
   }
   bench.scenes.seed = options.seed;
   constexpr std::uint32_t kBelowRecordings = 0x3FFFFFFF;  // which begin above it, in the page
-  bench.scenes.last_epoch = static_cast<std::uint32_t>(std::time(nullptr)) & kBelowRecordings;
+  // Scenes of a second, so that a program that starts a second later begins beyond them.
+  constexpr std::uint32_t kScenesPerSecond = 64;  // Edits are fewer: a choice.
+  bench.scenes.last_epoch =
+      (kScenesPerSecond * static_cast<std::uint32_t>(std::time(nullptr))) & kBelowRecordings;
   bench.rate_hz = options.rate_hz;
   bench.devices = options.devices;
   bench.guidance = options.guidance;

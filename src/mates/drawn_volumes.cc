@@ -25,10 +25,10 @@ constexpr int kRays = 32;             // Along each side of the boxes' overlap: 
 constexpr int kMostRays = 64;         // Along a long side: a choice.
 constexpr double kRayStep = 2e-3;     // [m]: along long sides rays lie no further apart. A choice.
 constexpr double kShift = 0.4142136;  // Of a step: rays keep off the edges of what is drawn round.
-constexpr std::size_t kMostPoints = 512;    // Whose depth is looked for: a choice.
-constexpr std::size_t kMostInside = 64;     // Points of a part that is inside the other: a choice.
-constexpr double kInterference = 1e-6;      // [m]: less is drawn equal.
-constexpr double kTouching = 50e-6;         // [m]: faces of meshes that touch may lie this deep.
+constexpr std::size_t kMostPoints = 512;  // Whose depth is looked for: a choice.
+constexpr std::size_t kMostInside = 64;   // Points of a part that is inside the other: a choice.
+constexpr double kInterference = 1e-6;    // [m]: less is drawn equal.
+constexpr double kTouching = 50e-6;       // [m]: faces of meshes that touch may lie this deep.
 
 /** A triangle of a part and its face, in the frame F of a measurement. */
 struct Facet {
@@ -283,8 +283,9 @@ class NearestPoint {
 
   /** @pre There is one. */
   [[nodiscard]] const Border& Of(const Vec3& p_F) const {
-    const auto at = std::lower_bound(points_.begin(), points_.end(), p_F.x(),
-                                     [](const Border& x, double along) { return x.p_F.x() < along; });
+    const auto at =
+        std::lower_bound(points_.begin(), points_.end(), p_F.x(),
+                         [](const Border& x, double along) { return x.p_F.x() < along; });
     const Border* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
     const auto look = [&](const Border& point) {

@@ -170,6 +170,7 @@ export const de: Record<MessageKey, string> = {
   "steps.park": "{name} beiseitelegen",
   "steps.aside": "{name} beiseiteschieben",
   "steps.return": "{name} zurückschieben",
+  "steps.assume": "{name} liegt, wo die Zeichnung es hat: kein Weg hinein wurde gefunden",
   "steps.doneAll": "Alle Schritte sind getan.",
   "steps.pending.one": "{n} weiteres Teil wird vorbereitet. Sein Schritt folgt.",
   "steps.pending.other": "{n} weitere Teile werden vorbereitet. Ihre Schritte folgen.",

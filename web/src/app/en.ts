@@ -170,6 +170,7 @@ export const en = {
   "steps.park": "Put {name} aside",
   "steps.aside": "Move {name} aside",
   "steps.return": "Move {name} back",
+  "steps.assume": "{name} is put where the drawing has it: no way in was found",
   "steps.doneAll": "All steps are done.",
   "steps.pending.one": "{n} more part is being prepared. Its step follows.",
   "steps.pending.other": "{n} more parts are being prepared. Their steps follow.",
