@@ -25,7 +25,7 @@ class Page(unittest.TestCase):
                         exec(compile(block, "docs/python.md", "exec"), scope)
             finally:
                 os.chdir(before)
-        for part in ["38 parts", "not-found", "interference", "True 4ec230565db9cebff76a10a83fabcefc", "True", "seated", "10 of 10"]:
+        for part in ["38 parts", "not-found", "interference", "True 843a85d5bc4c76e4176ead5c0adc7136", "True", "seated", "10 of 10"]:
             self.assertIn(part, printed.getvalue())
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import hvas
 from support import PRODUCTS
 
-BUSHING_DIGEST = "4ec230565db9cebff76a10a83fabcefc"  # That of `hvas assemble products/bushing.step`.
+BUSHING_DIGEST = "843a85d5bc4c76e4176ead5c0adc7136"  # That of `hvas assemble products/bushing.step`.
 
 
 class Assembly(unittest.TestCase):

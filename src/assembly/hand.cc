@@ -39,6 +39,7 @@ Hand MakeGuidedHand(const simulation::Model& model, const simulation::RenderOpti
   hand.tick.device.max_force = 1.2 * simulation::kMostHandForce;  // The coupling has nine tenths.
   hand.tick.device.max_torque = 20;
   hand.tick.coupling = {4000, 90, 60, 3};
+  hand.tick.guidance.captures_on_straight_end = true;  // It needs no guidance to find its way.
   hand.tick.dt = 1 / render.rate_hz;
   hand.mover = std::make_unique<simulation::GuidedHand>(simulation::StartOfHand(model));
   return hand;

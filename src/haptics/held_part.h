@@ -112,8 +112,8 @@ struct HeldPart {
   spatial::Pose X_WB_start;          ///< Where it is taken up, unless it moves.
   spatial::Pose X_WB_goal;           ///< Its place in the product.
   Vec3 insertion_W{-Vec3::UnitZ()};  ///< Unit, the way in.
-  /** How far from its place its way is straight [m]: where a way bends or turns, no mate captures
-   it further out, and nothing draws it straight to its place. */
+  /** How far from its place its way is straight [m]; where a way bends or turns, nothing draws it
+   straight to its place. */
   double straight_end{std::numeric_limits<double>::infinity()};
   bool starts_in_place{false};  ///< It is taken out: X_WB_start is its place.
   std::vector<HeldMate> mates;

@@ -187,7 +187,8 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
   axis_ = nullptr;
   const spatial::Pose X_WWish = WithoutOvershoot(part, X_WT);
   const double to_go = (X_WB * part.p_BoBcm_B - part.X_WB_goal * part.p_BoBcm_B).norm();
-  const bool is_on_straight_end = to_go <= std::max(part.straight_end, options.match_distance);
+  const bool may_capture = !options.captures_on_straight_end ||
+                           to_go <= std::max(part.straight_end, options.match_distance);
   const std::size_t count = std::min(part.mates.size(), kMaxMates);
   for (std::size_t i = 0; i < count; ++i) {
     const HeldMate& mate = part.mates[i];
@@ -202,7 +203,7 @@ void MateGuide::Update(const HeldPart& part, const GuidanceOptions& options,
     // An engaged shaft can only be drawn out along its axis; before that the hand's wish counts.
     if (!state.is_captured || g.engaged <= 0) {
       state.is_captured =
-          is_on_straight_end && mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
+          may_capture && mates::IsCaptured(kind, now, state.is_captured, options.capture) &&
           mates::CalcCaptureRatio(kind, deviation(X_WWish), options.capture) < kHandRatio;
     }
     is_near_ = is_near_ || mates::CalcCaptureRatio(kind, now, options.capture) < kNearRatio;

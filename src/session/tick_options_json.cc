@@ -135,7 +135,7 @@ struct AllFields {
   static void Visit(F& f, haptics::GuidanceOptions& value) {
     auto& [capture, ramp_time, k_lin, k_rot, max_force, max_torque, attraction_force,
            attraction_torque, seat_distance, seat_angle, match_distance, seat_time, finish_distance,
-           contact_in_holes, threads_turn, attracts_in_fits] = value;
+           contact_in_holes, threads_turn, attracts_in_fits, captures_on_straight_end] = value;
     VisitInner(f, "capture", capture);
     f("ramp_time_s", ramp_time);
     f("k_lin_n_per_m", k_lin);
@@ -296,7 +296,8 @@ constexpr const char* kFinishDistance = "finish_distance_m";  // Only where part
 constexpr const char* kAttractsInFits = "attracts_in_fits";   // Only where it does.
 constexpr const char* kContactInHoles = "contact_in_holes";   // Only where it answers there.
 constexpr const char* kThreadsTurn = "threads_turn";          // Only where they do.
-constexpr const char* kPaperKOfInterference = "paper_k_r";    // Only where it is not the usual one.
+constexpr const char* kCapturesOnStraightEnd = "captures_on_straight_end";  // Only where it is so.
+constexpr const char* kPaperKOfInterference = "paper_k_r";  // Only where it is not the usual one.
 constexpr const char* kPaperKOfTransition = "paper_k_s";
 
 }  // namespace
@@ -323,6 +324,9 @@ Json MakeTickOptionsJson(const haptics::TickOptions& options) {
   }
   if (copy.guidance.threads_turn) {
     maker(kThreadsTurn, copy.guidance.threads_turn);
+  }
+  if (copy.guidance.captures_on_straight_end) {
+    maker(kCapturesOnStraightEnd, copy.guidance.captures_on_straight_end);
   }
   if (copy.paper_factors != haptics::PaperFactors()) {
     maker(kPaperKOfInterference, copy.paper_factors.interference);
@@ -352,6 +356,9 @@ Result<haptics::TickOptions> ParseTickOptions(const Json& json) {
   }
   if (fields.has(kThreadsTurn)) {
     fields(kThreadsTurn, options.guidance.threads_turn);
+  }
+  if (fields.has(kCapturesOnStraightEnd)) {
+    fields(kCapturesOnStraightEnd, options.guidance.captures_on_straight_end);
   }
   if (fields.has(kPaperKOfInterference) || fields.has(kPaperKOfTransition)) {
     fields(kPaperKOfInterference, options.paper_factors.interference);

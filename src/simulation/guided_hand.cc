@@ -38,7 +38,7 @@ constexpr double kOvershoot = 0.15e-3;     // [m] that the arm's mass goes on by
 constexpr double kBraking = 3e-3;          // [m] before a bend, where it slows down
 constexpr double kMostTurnLead = 0.1;      // [rad] that the hand turns ahead of the part
 constexpr double kPatience = 60;           // [s] for a way, besides four times what it takes
-constexpr double kMostOffset = 0.1;        // [m]: what the arm turns into kMostHandForce
+constexpr double kMostOffset = 0.02;       // [m]
 constexpr double kMostTurn = 0.2;          // [rad]
 constexpr double kSlackTime = 0.08;        // [s]
 constexpr double kSpeedTime = 0.02;        // [s] over which the speed is measured
@@ -139,10 +139,10 @@ bool GuidedHand::FollowReaches() noexcept {
   return is_there || phase_time_s_ > kMostWait;
 }
 
-void GuidedHand::Correct(const spatial::Twist& error) noexcept {
+void GuidedHand::Correct(const spatial::Twist& error, double most) noexcept {
   offset_W_ += dt_ / kCorrectTime * error.v;
   turn_W_ += dt_ / kTurnCorrectTime * error.w;
-  offset_W_ *= std::min(1.0, kMostOffset / std::max(kMostOffset, offset_W_.norm()));
+  offset_W_ *= std::min(1.0, most / std::max(most, offset_W_.norm()));
   turn_W_ *= std::min(1.0, kMostTurn / std::max(kMostTurn, turn_W_.norm()));
 }
 
@@ -261,7 +261,7 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
   speed_ += ((seen_ - before) / dt_ - speed_) * std::min(1.0, dt_ / kSpeedTime);
   const spatial::Pose X_WN = task_.WayAt(seen_);
   const spatial::Twist error{spatial::RotationBetween(X_WG.q(), X_WN.q()), X_WN.p() - X_WG.p()};
-  Correct(error);
+  Correct(error, is_by_pose ? kMostHandForce / arm_.stiffness : kMostOffset);
   if (is_backing_ && Sense() * (seen_ - back_to_) > 0) {
     is_backing_ = false;
     nearest_ = seen_;
@@ -316,7 +316,7 @@ void GuidedHand::StepPhase(const OperatorInput& input) noexcept {
       const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
       const spatial::Twist error{spatial::RotationBetween(X_WG.q(), q_ref_), p_ref_ - X_WG.p()};
       if (reaches_.is_done()) {
-        Correct(error);
+        Correct(error, kMostOffset);
       }
       Refer({q_ref_, p_ref_});
       const bool hangs_there = error.v.norm() < kHangs && error.w.norm() < kTurned;
@@ -357,6 +357,11 @@ device::DeviceState GuidedHand::Step(const OperatorInput& input) noexcept {
   phase_time_s_ += dt_;
   const Vec3 p_before = p_ref_;
   StepPhase(input);
+  // The arm presses no harder than it may.
+  const Vec3 ahead = p_ref_ - X_WH_.p();
+  if (const double most = kMostHandForce / arm_.stiffness; ahead.norm() > most) {
+    p_ref_ = X_WH_.p() + most * ahead.normalized();
+  }
   v_ref_ = (p_ref_ - p_before) / dt_;
   v_ref_ *= kFastest / std::max(kFastest, v_ref_.norm());
   HandReference reference;

@@ -58,8 +58,9 @@ class GuidedHand final : public TaskOperator {
   /** Follows the reaches; true when they are done and the hand is there. */
   [[nodiscard]] bool FollowReaches() noexcept;
   /** Corrects the reference so that the part is where the hand means it to be.
-   @param error  From the part to there: twist as place and turn. */
-  void Correct(const spatial::Twist& error) noexcept;
+   @param error  From the part to there: twist as place and turn.
+   @param most  How far it is corrected at most [m]. */
+  void Correct(const spatial::Twist& error, double most) noexcept;
   void StepFollow(const OperatorInput& input) noexcept;
   /** Chooses how hard to press by how fast the part comes on. */
   void Press(double speed, double wanted_speed) noexcept;
