@@ -84,8 +84,8 @@ struct GuidanceOptions {
   /** X(9) goes on where a fit resists, as in paper X. Without it the fit takes over as it engages:
    what draws a part in holds it back on the way out. */
   bool attracts_in_fits{false};
-  /** On a way that bends or turns, mates capture on its last, straight piece only: further out they
-   would hold the part where it passes. For a hand that needs no guidance to find its way. */
+  /** Mates of a part whose way bends or turns capture it on the last, straight piece only: further
+   out they would hold it where it passes. For a hand that needs no guidance to find its way. */
   bool captures_on_straight_end{false};
 };
 
