@@ -285,6 +285,21 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
   }
 }
 
+void GuidedHand::StepCarry(const OperatorInput& input) noexcept {
+  load_W_ += (input.F_H_D.f - load_W_) * (dt_ / kLearnTime);
+  (void)FollowReaches();
+  const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
+  const spatial::Twist error{spatial::RotationBetween(X_WG.q(), q_ref_), p_ref_ - X_WG.p()};
+  if (reaches_.is_done()) {
+    Correct(error, kMostOffset);
+  }
+  Refer({q_ref_, p_ref_});
+  const bool hangs_there = error.v.norm() < kHangs && error.w.norm() < kTurned;
+  if (reaches_.is_done() && (hangs_there || phase_time_s_ > kMostWait)) {
+    BeginFollow();
+  }
+}
+
 void GuidedHand::StepPhase(const OperatorInput& input) noexcept {
   switch (phase_) {
     case Phase::kIdle: {
@@ -310,21 +325,9 @@ void GuidedHand::StepPhase(const OperatorInput& input) noexcept {
         BeginCarry();
       }
       break;
-    case Phase::kCarry: {
-      load_W_ += (input.F_H_D.f - load_W_) * (dt_ / kLearnTime);
-      (void)FollowReaches();
-      const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
-      const spatial::Twist error{spatial::RotationBetween(X_WG.q(), q_ref_), p_ref_ - X_WG.p()};
-      if (reaches_.is_done()) {
-        Correct(error, kMostOffset);
-      }
-      Refer({q_ref_, p_ref_});
-      const bool hangs_there = error.v.norm() < kHangs && error.w.norm() < kTurned;
-      if (reaches_.is_done() && (hangs_there || phase_time_s_ > kMostWait)) {
-        BeginFollow();
-      }
+    case Phase::kCarry:
+      StepCarry(input);
       break;
-    }
     case Phase::kFollow:
       StepFollow(input);
       break;

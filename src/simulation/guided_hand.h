@@ -61,6 +61,7 @@ class GuidedHand final : public TaskOperator {
    @param error  From the part to there: twist as place and turn.
    @param most  How far it is corrected at most [m]. */
   void Correct(const spatial::Twist& error, double most) noexcept;
+  void StepCarry(const OperatorInput& input) noexcept;
   void StepFollow(const OperatorInput& input) noexcept;
   /** Chooses how hard to press by how fast the part comes on. */
   void Press(double speed, double wanted_speed) noexcept;
