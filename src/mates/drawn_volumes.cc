@@ -108,7 +108,8 @@ class RayGrid {
 
   /** All rays one after the other, the crossings of each in their order. */
   [[nodiscard]] std::vector<std::vector<Crossing>> Cross(const std::vector<Facet>& facets) const {
-    std::vector<std::vector<Crossing>> rays(static_cast<std::size_t>(rays_[0]) * rays_[1]);
+    std::vector<std::vector<Crossing>> rays(static_cast<std::size_t>(rays_[0]) *
+                                            static_cast<std::size_t>(rays_[1]));
     for (const Facet& facet : facets) {
       AddFacet(facet, &rays);
     }

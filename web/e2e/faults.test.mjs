@@ -17,6 +17,7 @@ import {
   waitForPlacement,
   waitForRest,
   waitForState,
+  waitForView,
   withStudio,
 } from "./harness.mjs";
 
@@ -27,6 +28,7 @@ shareBrowser();
 
 /** The mouse takes hold of the shaft, which may be in the hand already, and holds it higher. */
 async function liftShaft(page) {
+  await waitForView(page); // It is pressed where it is seen when the button goes down.
   const at = await page.evaluate((id) => window.hvas.screen(id), kShaft);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
@@ -38,6 +40,7 @@ async function liftShaft(page) {
 /** The hand moves the part again. */
 async function goesOn(page) {
   const before = await poseOf(page, kShaft);
+  await waitForView(page); // It is pressed where it is seen when the button goes down.
   const at = await page.evaluate((id) => window.hvas.screen(id), kShaft);
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();

@@ -28,7 +28,7 @@ std::string ReadText(const std::filesystem::path& file) {
 
 /** Copies an example product, without its side file. */
 std::filesystem::path Copy(const std::string& name, const TemporaryFolder& folder) {
-  const std::filesystem::path copy = folder / (name + ".step");
+  std::filesystem::path copy = folder / (name + ".step");
   std::filesystem::copy_file(std::filesystem::path(HVAS_SOURCE_DIR) / "products" / (name + ".step"),
                              copy, std::filesystem::copy_options::overwrite_existing);
   return copy;
@@ -49,7 +49,7 @@ std::filesystem::path CopyWithoutNames(const std::string& name, const TemporaryF
     at = begin + static_cast<std::size_t>(match->length());
   }
   EXPECT_GT(count, 0);
-  const std::filesystem::path copy = folder / (name + "_neutral.step");
+  std::filesystem::path copy = folder / (name + "_neutral.step");
   std::ofstream(copy) << neutral << text.substr(at);
   return copy;
 }
