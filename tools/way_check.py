@@ -5,8 +5,8 @@
 
 For each part with a planned way it tells how far the displayed part stayed from that way at most: each pose of the way, 0.5 mm
 apart, against the recorded pose that is nearest to it. A way is followed where that is at most 0.1 mm and 0.1 degrees, contact is
-nowhere deeper than 20 um, and the part is in its place. Ways on which something gives, that are pressed, or whose part is assumed
-because nothing was planned for it, are listed by their own words. The exit status is 1 where a way was not followed.
+nowhere deeper than 20 um, and the part is in its place. Ways on which something gives or that are pressed are listed as such, and
+do not count; parts without a planned way are not listed. The exit status is 1 where a way was not followed.
 """
 
 import argparse
@@ -69,7 +69,7 @@ def measure(way, shown):
 
 
 def check(hvas, file, every):
-    """Prints the ways of a product; returns how many were planned and how many not followed."""
+    """Prints the planned ways of a product; returns how many were not followed."""
     with tempfile.TemporaryDirectory() as folder:
         record = pathlib.Path(folder) / "run.hvasrec"
         table = pathlib.Path(folder) / "run.csv"

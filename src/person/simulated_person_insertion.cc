@@ -347,7 +347,7 @@ bool SimulatedPerson::IsLedByEye() const noexcept {
 }
 
 bool SimulatedPerson::HasSlotToFind() const noexcept {
-  return is_guided_ && task_.way != nullptr && !task_.is_threaded;
+  return is_guided_ && task_.bends();
 }
 
 void SimulatedPerson::FollowWayByEye(const simulation::OperatorInput& input,

@@ -8,12 +8,6 @@
 #include "base/check.h"
 
 namespace hvas::sequence {
-namespace {
-
-constexpr double kTurningShare =
-    0.2;  // Of the travel: where less of it is distance, it turns. A choice.
-
-}  // namespace
 
 GripWay::GripWay(std::vector<spatial::Pose> X_WG, double radius)
     : X_WG_(std::move(X_WG)), radius_(radius) {

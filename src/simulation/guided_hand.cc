@@ -255,13 +255,12 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
   const spatial::Pose X_WG(input.X_WD.q(), input.X_WD * task_.p_BG);
   const double speed =
       LimitOnWay(seen_ > task_.engage_distance + kStandOff ? kApproachSpeed : kInsertSpeed);
-  const bool is_by_pose = task_.way != nullptr && !task_.is_threaded;
   const double before = seen_;
-  seen_ = is_by_pose ? seen_ : task_.TravelOf(X_WG, seen_);
+  seen_ = task_.bends() ? seen_ : task_.TravelOf(X_WG, seen_);
   speed_ += ((seen_ - before) / dt_ - speed_) * std::min(1.0, dt_ / kSpeedTime);
   const spatial::Pose X_WN = task_.WayAt(seen_);
   const spatial::Twist error{spatial::RotationBetween(X_WG.q(), X_WN.q()), X_WN.p() - X_WG.p()};
-  Correct(error, is_by_pose ? kMostHandForce / arm_.stiffness : kMostOffset);
+  Correct(error, task_.bends() ? most_ahead_ : kMostOffset);
   if (is_backing_ && Sense() * (seen_ - back_to_) > 0) {
     is_backing_ = false;
     nearest_ = seen_;
@@ -272,7 +271,7 @@ void GuidedHand::StepFollow(const OperatorInput& input) noexcept {
     BeginPutDown();
     return;
   }
-  if (is_by_pose) {
+  if (task_.bends()) {
     FollowByPose(error, speed);
   } else {
     FollowByForce(error, speed);
@@ -361,9 +360,8 @@ device::DeviceState GuidedHand::Step(const OperatorInput& input) noexcept {
   const Vec3 p_before = p_ref_;
   StepPhase(input);
   // The arm presses no harder than it may.
-  const Vec3 ahead = p_ref_ - X_WH_.p();
-  if (const double most = kMostHandForce / arm_.stiffness; ahead.norm() > most) {
-    p_ref_ = X_WH_.p() + most * ahead.normalized();
+  if (const Vec3 ahead = p_ref_ - X_WH_.p(); ahead.norm() > most_ahead_) {
+    p_ref_ = X_WH_.p() + most_ahead_ * ahead.normalized();
   }
   v_ref_ = (p_ref_ - p_before) / dt_;
   v_ref_ *= kFastest / std::max(kFastest, v_ref_.norm());

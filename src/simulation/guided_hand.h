@@ -93,6 +93,7 @@ class GuidedHand final : public TaskOperator {
   }
 
   Arm arm_;
+  double most_ahead_{kMostHandForce / arm_.stiffness};  ///< Of the reference, of the hand [m].
   Phase phase_{Phase::kIdle};
   PersonTask task_;
   Ring<PersonTask> tasks_{4};

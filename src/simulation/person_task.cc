@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace hvas::simulation {
-namespace {
-
-constexpr double kLeastOfTravel = 0.2;  // Of the travel: where less of it is distance, it turns.
-
-}  // namespace
 
 spatial::Pose PersonTask::WayAt(double travel) const noexcept {
   return way != nullptr ? way->At(travel)
@@ -25,7 +20,7 @@ Vec3 PersonTask::OutwardAt(double travel) const noexcept {
     return extraction_W;
   }
   const Vec3 v_W = way->RateAt(travel).v;
-  return v_W.norm() > kLeastOfTravel ? Vec3(v_W.normalized()) : extraction_W;
+  return v_W.norm() > sequence::GripWay::kTurningShare ? Vec3(v_W.normalized()) : extraction_W;
 }
 
 Vec3 PersonTask::CalcLifted() const noexcept {

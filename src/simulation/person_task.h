@@ -42,6 +42,9 @@ struct PersonTask {
   double transfer_radius{0};    ///< [m] at which it may be carried around the product.
   double lift_height{0.05};     ///< [m] that clears the other parts on the table.
 
+  /** Its way bends or turns, and not as a thread does. RT-safe. */
+  [[nodiscard]] bool bends() const noexcept { return way != nullptr && !is_threaded; }
+
   /** Where the way has the grip, so far from the goal. RT-safe. */
   [[nodiscard]] spatial::Pose WayAt(double travel) const noexcept;
 
