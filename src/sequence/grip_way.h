@@ -12,7 +12,7 @@ namespace hvas::sequence {
  for the constructor. */
 class GripWay {
  public:
-  /** Of the travel: where less of it is distance, the way turns. A choice. */
+  /** Share of the travel: where less of it is distance, the way turns. A choice. */
   static constexpr double kTurningShare = 0.2;
 
   /** @param X_WG  The goal first; two poses at least, of which the last two differ in position.

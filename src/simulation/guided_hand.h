@@ -93,7 +93,8 @@ class GuidedHand final : public TaskOperator {
   }
 
   Arm arm_;
-  double most_ahead_{kMostHandForce / arm_.stiffness};  ///< Of the reference, of the hand [m].
+  /** The reference is ahead of the hand by no more [m]. */
+  double most_ahead_{kMostHandForce / arm_.stiffness};
   Phase phase_{Phase::kIdle};
   PersonTask task_;
   Ring<PersonTask> tasks_{4};
